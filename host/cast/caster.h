@@ -1,0 +1,55 @@
+// Scene -> plan -> records -> pipeline -> dispatches -> bands or hits. The GPU side's two calls.
+#pragma once
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/gpu/device.h"
+#include "host/image/band.h"
+#include "host/scene/ray.h"
+#include "host/scene/world.h"
+
+namespace solidcast {
+
+enum class Method { naive, fast, exact };
+enum class Arithmetic { automatic, fp64, df32 };  // of `exact`
+
+struct CastOptions {
+  Method method = Method::exact;
+  Arithmetic arithmetic = Arithmetic::automatic;
+  std::string shaderFolder;                           // compile from here instead of the carried modules; "" = carried
+  std::size_t memoryBudget = std::size_t{512} << 20;  // bytes for host-visible buffers
+};
+
+/// Phases in ms and sizes, as `--stats` prints them.
+struct CastStats {
+  double flatten_ms = 0, shader_ms = 0, first_dispatch_ms = 0, dispatch_ms = 0, readback_ms = 0, fallback_ms = 0;
+  std::uint64_t rays = 0, fallbackRays = 0;
+  std::uint64_t deviceBytes = 0;
+  std::string module;
+  std::size_t spirvBytes = 0, specialisedSpirvBytes = 0;  // the second only after leftOut() was asked for
+  std::vector<std::string> plan;                          // lines: what was decided, and why
+  std::vector<std::string> leftOut;                       // lines: what this scene does not need
+};
+
+using CastProgress = std::function<void(double fraction)>;
+
+/// Renders on the device; bands come to `sink` from the top down, each small enough for the memory budget.
+void renderGpu(gpu::Device& device, const Scene& scene, const RenderJob& job, const CastOptions& options,
+               const BandSink& sink, CastStats& stats, const CastProgress& progress = {});
+
+/// Casts free rays. A QueryCaster keeps its pipeline and records between calls, so that rays can stream.
+class QueryCaster {
+ public:
+  QueryCaster(gpu::Device& device, const World& world, const CastOptions& options);
+  ~QueryCaster();
+  void cast(std::span<const QueryRay> rays, std::span<QueryHit> hits);
+  const CastStats& stats() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace solidcast

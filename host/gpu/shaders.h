@@ -1,0 +1,47 @@
+// GLSL to SPIR-V: modules compiled at build time and carried in the binary, or compiled now from a folder that
+// somebody edits.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace solidcast::gpu {
+
+/// A module carried in the binary, by its name in CMakeLists.txt's list (e.g. "pixels_exact"); throws Exit::shader if unknown.
+std::span<const std::uint32_t> carriedModule(std::string_view name);
+
+/// Names of all carried modules.
+std::vector<std::string_view> carriedModules();
+
+using Defines = std::vector<std::pair<std::string, std::string>>;
+
+struct CompiledModule {
+  std::vector<std::uint32_t> spirv;
+  std::vector<std::filesystem::path> files;  // the file itself and everything it included
+};
+
+/// Compiles `file` (a .comp) in process; `#include "x"` is looked up beside the including file, then in `folders`.
+/// Throws Exit::shader with one line `path:line: error: message` (first error first, further ones on lines of their own).
+CompiledModule compile(const std::filesystem::path& file, const Defines& defines,
+                       const std::vector<std::filesystem::path>& folders = {});
+
+/// The same from text; `name` stands for the file in messages.
+CompiledModule compileText(const std::string& text, const std::string& name, const Defines& defines,
+                           const std::vector<std::filesystem::path>& folders = {});
+
+/// The module as the driver sees it after specialisation: constants set and folded, dead branches, functions and
+/// variables removed (SPIRV-Tools). For --stats and tests.
+std::vector<std::uint32_t> specialised(std::span<const std::uint32_t> spirv,
+                                       const std::vector<std::pair<std::uint32_t, std::uint32_t>>& constants);
+
+/// Empty, or spirv-val's message.
+std::string validationError(std::span<const std::uint32_t> spirv);
+
+/// Disassembly with names, for people and tests.
+std::string disassemble(std::span<const std::uint32_t> spirv);
+
+}  // namespace solidcast::gpu

@@ -1,0 +1,118 @@
+// The plain scene description: the only thing that the GPU side and reference_cpu have in common.
+// Every number is fp64 exactly as it was parsed; that is the truth against which errors are counted.
+// No mathematics, no GLM, no Vulkan in this file.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace solidcast {
+
+using Triple = std::array<double, 3>;  // a point, vector or colour; x, y, z or r, g, b
+
+// --- solids (names and arguments of the course sheet) ---------------------------------------------
+
+/// Normal of any length.
+struct InfinitePlane {
+  Triple origin, normal;
+};
+/// Opposite corners in any order.
+struct AABox {
+  Triple corner1, corner2;
+};
+struct Sphere {
+  Triple center;
+  double radius;
+};
+/// Normal of any length.
+struct Disc {
+  Triple center, normal;
+  double radius;
+};
+/// Normal (v2-v1) x (v3-v1).
+struct Triangle {
+  Triple v1, v2, v3;
+};
+/// Parallelogram vertex + u span1 + v span2, u and v in [0,1]; normal span1 x span2.
+struct Quad {
+  Triple vertex, span1, span2;
+};
+/// a..j of ax^2+by^2+cz^2+dxy+exz+fyz+gx+hy+iz+j = 0; normal along the gradient.
+struct Quadric {
+  std::array<double, 10> coefficients;
+};
+
+using Shape = std::variant<InfinitePlane, AABox, Sphere, Disc, Triangle, Quad, Quadric>;
+
+struct SolidEntry {
+  std::string name;  // unique in the scene; may be empty
+  Shape shape;
+  std::uint32_t group = 0;  // index into World::groups
+};
+
+struct GroupMember {
+  bool isGroup = false;
+  std::uint32_t index = 0;  // into World::groups or World::solids
+};
+
+struct GroupEntry {
+  std::string name;                  // unique in the scene; may be empty
+  std::uint32_t parent = 0;          // index into World::groups; the root is its own parent
+  std::vector<GroupMember> members;  // in the order of the scene file
+};
+
+/// A tree of groups, stored flat so that depth costs no recursion.
+/// `solids` are in depth-first order: a solid's place there is its `index` everywhere (query, AOV, ties).
+struct World {
+  std::vector<SolidEntry> solids;
+  std::vector<GroupEntry> groups{GroupEntry{}};  // groups[0] is the root
+};
+
+// --- cameras --------------------------------------------------------------------------------------
+// right = normalize(forward x up), upward = right x forward. Pixel (i, j), j down:
+// x = 2(i+0.5)/W - 1, y = 1 - 2(j+0.5)/H.
+/// Direction normalize(forward + x tan(h/2) right + y tan(v/2) upward); angles in degrees, in (0, 180).
+struct PerspectiveCamera {
+  Triple center, forward, up;
+  double verticalAngle, horizontalAngle;
+};
+/// Origin center + x scaleX/2 right + y scaleY/2 upward, direction forward (normalised); scales are full extents.
+struct OrthographicCamera {
+  Triple center, forward, up;
+  double scaleX, scaleY;
+};
+/// theta = x h/2, phi = y v/2; direction cos(phi) (cos(theta) forward + sin(theta) right) + sin(phi) upward.
+/// Angles in degrees: horizontal in (0, 360], vertical in (0, 180].
+struct EnvironmentCamera {
+  Triple center, forward, up;
+  double verticalAngle, horizontalAngle;
+};
+
+using Camera = std::variant<PerspectiveCamera, OrthographicCamera, EnvironmentCamera>;
+
+// --- integrators ----------------------------------------------------------------------------------
+/// Radiance max(0, -d.n), grey; |d.n| when two-sided.
+struct RayCastingIntegrator {};
+/// The same cosine times a colour: nearColor + clamp((t-nearDist)/(farDist-nearDist), 0, 1) (farColor-nearColor).
+/// nearDist may lie beyond farDist; they must differ.
+struct RayCastingDistIntegrator {
+  Triple nearColor{1, 1, 1};
+  double nearDist = 0;
+  Triple farColor{0, 0, 0};
+  double farDist = 1;
+};
+
+using Integrator = std::variant<RayCastingIntegrator, RayCastingDistIntegrator>;
+
+struct Scene {
+  std::string file;  // where it came from, for messages
+  int width = 640, height = 480;
+  Camera camera = PerspectiveCamera{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 45, 60};
+  Integrator integrator = RayCastingIntegrator{};
+  bool twoSided = false;  // |d.n| instead of max(0, -d.n)
+  World world;
+};
+
+}  // namespace solidcast
