@@ -1,0 +1,42 @@
+# One shader -> SPIR-V -> validated -> C++ source with its words, and a dependency file for Ninja and Make.
+# Run as cmake -DNAME= -DGLSL= -DFOLDER= -DDEFINES= -DSPIRV= -DSOURCE= -DGLSLANG= -DSPIRV_VAL= -P carry_module.cmake
+set(macros "")
+foreach(define IN LISTS DEFINES)
+  list(APPEND macros "-D${define}")
+endforeach()
+
+execute_process(
+  COMMAND ${GLSLANG} -V --quiet --target-env vulkan1.1 ${macros} "-I${FOLDER}" --depfile ${SPIRV}.d -o ${SPIRV} ${GLSL}
+  RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+if(result)
+  # glslang: "ERROR: path:line: 'token' : message"; compilers and editors want "path:line: error: message".
+  string(REGEX REPLACE "(ERROR|WARNING): ([^\n]*:[0-9]+): '([^\n']*)' : +" "\\2: error: '\\3': " output "${output}")
+  message(FATAL_ERROR "${output}")
+endif()
+
+execute_process(COMMAND ${SPIRV_VAL} --target-env vulkan1.1 ${SPIRV}
+                RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+if(result)
+  message(FATAL_ERROR "${GLSL}: error: module ${NAME} is not valid SPIR-V: ${output}")
+endif()
+
+# Same prerequisites as glslang's, but the target is the C++ source.
+file(READ ${SPIRV}.d dependencies)
+string(FIND "${dependencies}" ".spv: " split)
+math(EXPR split "${split} + 6")
+string(SUBSTRING "${dependencies}" ${split} -1 dependencies)
+string(REPLACE " " "\\ " target "${SOURCE}")
+file(WRITE ${SOURCE}.d "${target}: ${dependencies}")
+
+file(READ ${SPIRV} bytes HEX)
+string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${bytes}")
+file(WRITE ${SOURCE} "#include \"host/gpu/carried.h\"
+
+namespace solidcast::gpu::carried {
+static const std::uint32_t words[] = {
+${words}
+};
+extern const std::span<const std::uint32_t> ${NAME};
+constinit const std::span<const std::uint32_t> ${NAME}{words};
+}  // namespace solidcast::gpu::carried
+")
