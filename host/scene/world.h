@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -17,31 +18,38 @@ using Triple = std::array<double, 3>;  // a point, vector or colour; x, y, z or 
 /// Normal of any length.
 struct InfinitePlane {
   Triple origin, normal;
+  bool operator==(const InfinitePlane&) const = default;
 };
 /// Opposite corners in any order.
 struct AABox {
   Triple corner1, corner2;
+  bool operator==(const AABox&) const = default;
 };
 struct Sphere {
   Triple center;
   double radius;
+  bool operator==(const Sphere&) const = default;
 };
 /// Normal of any length.
 struct Disc {
   Triple center, normal;
   double radius;
+  bool operator==(const Disc&) const = default;
 };
 /// Normal (v2-v1) x (v3-v1).
 struct Triangle {
   Triple v1, v2, v3;
+  bool operator==(const Triangle&) const = default;
 };
 /// Parallelogram vertex + u span1 + v span2, u and v in [0,1]; normal span1 x span2.
 struct Quad {
   Triple vertex, span1, span2;
+  bool operator==(const Quad&) const = default;
 };
 /// a..j of ax^2+by^2+cz^2+dxy+exz+fyz+gx+hy+iz+j = 0; normal along the gradient.
 struct Quadric {
   std::array<double, 10> coefficients;
+  bool operator==(const Quadric&) const = default;
 };
 
 using Shape = std::variant<InfinitePlane, AABox, Sphere, Disc, Triangle, Quad, Quadric>;
@@ -50,17 +58,20 @@ struct SolidEntry {
   std::string name;  // unique in the scene; may be empty
   Shape shape;
   std::uint32_t group = 0;  // index into World::groups
+  bool operator==(const SolidEntry&) const = default;
 };
 
 struct GroupMember {
   bool isGroup = false;
   std::uint32_t index = 0;  // into World::groups or World::solids
+  bool operator==(const GroupMember&) const = default;
 };
 
 struct GroupEntry {
   std::string name;                  // unique in the scene; may be empty
   std::uint32_t parent = 0;          // index into World::groups; the root is its own parent
   std::vector<GroupMember> members;  // in the order of the scene file
+  bool operator==(const GroupEntry&) const = default;
 };
 
 /// A tree of groups, stored flat so that depth costs no recursion.
@@ -68,6 +79,7 @@ struct GroupEntry {
 struct World {
   std::vector<SolidEntry> solids;
   std::vector<GroupEntry> groups{GroupEntry{}};  // groups[0] is the root
+  bool operator==(const World&) const = default;
 };
 
 // --- cameras --------------------------------------------------------------------------------------
@@ -77,24 +89,29 @@ struct World {
 struct PerspectiveCamera {
   Triple center, forward, up;
   double verticalAngle, horizontalAngle;
+  bool operator==(const PerspectiveCamera&) const = default;
 };
 /// Origin center + x scaleX/2 right + y scaleY/2 upward, direction forward (normalised); scales are full extents.
 struct OrthographicCamera {
   Triple center, forward, up;
   double scaleX, scaleY;
+  bool operator==(const OrthographicCamera&) const = default;
 };
 /// theta = x h/2, phi = y v/2; direction cos(phi) (cos(theta) forward + sin(theta) right) + sin(phi) upward.
 /// Angles in degrees: horizontal in (0, 360], vertical in (0, 180].
 struct EnvironmentCamera {
   Triple center, forward, up;
   double verticalAngle, horizontalAngle;
+  bool operator==(const EnvironmentCamera&) const = default;
 };
 
 using Camera = std::variant<PerspectiveCamera, OrthographicCamera, EnvironmentCamera>;
 
 // --- integrators ----------------------------------------------------------------------------------
 /// Radiance max(0, -d.n), grey; |d.n| when two-sided.
-struct RayCastingIntegrator {};
+struct RayCastingIntegrator {
+  bool operator==(const RayCastingIntegrator&) const = default;
+};
 /// The same cosine times a colour: nearColor + clamp((t-nearDist)/(farDist-nearDist), 0, 1) (farColor-nearColor).
 /// nearDist may lie beyond farDist; they must differ.
 struct RayCastingDistIntegrator {
@@ -102,6 +119,7 @@ struct RayCastingDistIntegrator {
   double nearDist = 0;
   Triple farColor{0, 0, 0};
   double farDist = 1;
+  bool operator==(const RayCastingDistIntegrator&) const = default;
 };
 
 using Integrator = std::variant<RayCastingIntegrator, RayCastingDistIntegrator>;
@@ -111,8 +129,11 @@ struct Scene {
   int width = 640, height = 480;
   Camera camera = PerspectiveCamera{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 45, 60};
   Integrator integrator = RayCastingIntegrator{};
+  /// What `--integrator castingdist` takes, whichever integrator the scene chooses; nothing: the scene has no such numbers.
+  std::optional<RayCastingDistIntegrator> distParameters;
   bool twoSided = false;  // |d.n| instead of max(0, -d.n)
   World world;
+  bool operator==(const Scene&) const = default;
 };
 
 }  // namespace solidcast
