@@ -1,0 +1,110 @@
+// What a ray is and what it remembers while it looks for the nearest solid.
+//
+// The search runs in inverse distance s = 1/t, t counted in lengths of the ray's direction. With a shared origin
+// every solid is then a few linear and quadratic forms in the direction, the largest positive s wins, and no
+// division is needed before the end. `best.s` starts at 0, so "in front of the eye" is the same comparison.
+//
+// Each solid's file gives up to three searches over the same solid:
+//   KIND_eye    forms prepared by the host for one shared origin; real = float, double or double-float
+//   KIND_free   any ray, from the solid itself; real = float or double
+//   KIND_naive  any ray, the textbook in fp32: the yardstick
+// and KIND_finish, which turns the winner into its normal and local coordinates.
+#ifndef SOLIDCAST_HIT
+#define SOLIDCAST_HIT
+#include "numeric.glsl"
+
+// One row of the solids' records for the search, and one of their world records; the including shader defines them.
+real4 record(uint row);
+real4 worldRecord(uint row);
+
+struct EyeRay {
+  real3 direction;  // in camera axes (right, upward, backward), any length
+  real3 world;      // the same in world axes; only boxes read it
+  real squared;     // |direction|^2
+};
+
+struct Best {
+  real s;       // largest inverse distance so far; 0: nothing hit
+  real cosine;  // -n.d of that hit, n the unit normal, d with the ray's length
+  real index;   // of the solid, depth first
+#ifdef EXACT
+  real second;  // largest s that lost: too near to s means that the order is in doubt
+  real margin;  // smallest decision so far, each divided by its own scale: below the bound it is in doubt
+#endif
+};
+
+Best noHit() {
+#ifdef EXACT
+  return Best(number(0.0), number(0.0), number(-1.0), number(0.0), number(1.0));
+#else
+  return Best(number(0.0), number(0.0), number(-1.0));
+#endif
+}
+
+// A sign of `value` was used whose rounding error is at most DOUBT |d|^2 / weight. NaN (root of a negative number:
+// that sign was counted already) leaves the margin alone.
+void decided(inout Best best, real value, real weight) {
+#ifdef EXACT
+  real m = mul(magnitude(value), weight);
+  best.margin = select(best.margin, m, less(m, best.margin));
+#endif
+}
+
+// A candidate at inverse distance s. At equal s the solid with the lower index wins; `exact` leaves that, like
+// every near tie, to the second pass.
+void offer(inout Best best, bool inside, real s, real cosine, real index) {
+#ifdef EXACT
+  bool nearer = inside && less(best.s, s);
+  real loser = select(s, best.s, nearer);
+  best.second = select(best.second, loser, inside && less(best.second, loser));
+#else
+  bool nearer = inside && (less(best.s, s) || (!less(s, best.s) && less(number(0.0), s) && less(index, best.index)));
+#endif
+  best.s = select(best.s, s, nearer);
+  best.cosine = select(best.cosine, cosine, nearer);
+  best.index = select(best.index, index, nearer);
+}
+
+#if ARITHMETIC != 2
+
+struct FreeRay {
+  real3 origin, direction;  // world axes; the origin is relative to the records' own
+  real squared;             // |direction|^2
+  real reach;               // |origin|, for error scales
+};
+
+real dot3(real3 a, real3 b) { return linear(a, b); }
+real3 cross3(real3 a, real3 b) {
+  precise real3 r = real3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+  return r;
+}
+real3 minus3(real3 a, real3 b) {
+  precise real3 r = a - b;
+  return r;
+}
+real length3(real3 a) { return root(dot3(a, a)); }
+real3 unit3(real3 a) {  // scaled first: squares of 1e30 overflow fp32
+  real big = larger(larger(abs(a.x), abs(a.y)), abs(a.z));
+  if (big == real(0)) return a;
+  precise real3 v = a / big;
+  real l = length3(v);
+  precise real3 r = v / l;
+  return r;
+}
+// Like decided(), with the scale known only here.
+void decidedAgainst(inout Best best, real value, real scale) {
+#ifdef EXACT
+  real m = abs(value) / scale;
+  best.margin = select(best.margin, m, less(m, best.margin));
+#endif
+}
+
+struct Nearest {  // of the textbook search, in t
+  float t, cosine, index;
+};
+void offerNaive(inout Nearest best, bool hit, float t, float cosine, float index) {
+  if (hit && t > 0.0 && (t < best.t || (t == best.t && index < best.index))) best = Nearest(t, cosine, index);
+}
+
+#endif
+#endif
