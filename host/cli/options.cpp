@@ -1,0 +1,200 @@
+#include "host/cli/options.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <thread>
+
+#include "host/error.h"
+#include "host/scene/load.h"
+
+namespace solidcast::cli {
+namespace {
+
+constexpr int kLargestSide = 100000;
+constexpr int kMostSamples = 64;
+
+/// An option whose value is one of a few words.
+template <class T>
+CLI::Option* addChoice(CLI::App& verb, const std::string& name, T& value,
+                       const std::vector<std::pair<std::string, T>>& choices, const std::string& help) {
+  std::string words;
+  for (const auto& [word, unused] : choices) words += (words.empty() ? "" : "|") + word;
+  const auto set = [&value, choices, name, words](const std::string& given) {
+    for (const auto& [word, meaning] : choices)
+      if (word == given) {
+        value = meaning;
+        return;
+      }
+    throw Error(Exit::usage, name + ": \"" + given + "\" is unknown, expected " + words);
+  };
+  return verb.add_option_function<std::string>(name, set, help)->type_name(words);
+}
+
+/// Splits text into exactly `count` whole numbers with `separator` between them.
+bool wholeNumbers(const std::string& text, char separator, int* out, int count) {
+  const char *at = text.data(), *end = at + text.size();
+  for (int i = 0; i < count; ++i) {
+    if (i > 0 && (at == end || *at++ != separator)) return false;
+    const auto [next, error] = std::from_chars(at, end, out[i]);
+    if (error != std::errc{}) return false;
+    at = next;
+  }
+  return at == end;
+}
+
+}  // namespace
+
+std::pair<int, int> parseSize(const std::string& option, const std::string& text) {
+  int side[2];
+  if (!wholeNumbers(text, 'x', side, 2) || std::min(side[0], side[1]) < 1 || std::max(side[0], side[1]) > kLargestSide)
+    throw Error(Exit::usage, option + ": \"" + text + "\" is no image size, expected WIDTHxHEIGHT, each from 1 to " +
+                                 std::to_string(kLargestSide) + ", e.g. 640x480");
+  return {side[0], side[1]};
+}
+
+Crop parseCrop(const std::string& option, const std::string& text) {
+  int value[4];
+  if (!wholeNumbers(text, ',', value, 4) || value[0] < 0 || value[1] < 0 || value[2] < 1 || value[3] < 1)
+    throw Error(Exit::usage, option + ": \"" + text +
+                                 "\" is no part of an image, expected X,Y,WIDTH,HEIGHT in pixels from the top left "
+                                 "corner, e.g. 100,50,64,64");
+  return {value[0], value[1], value[2], value[3]};
+}
+
+void addImageOptions(CLI::App& verb, ImageOptions& options) {
+  addChoice<std::string>(verb, "--integrator", options.integrator,
+                         {{"casting", "casting"}, {"castingdist", "castingdist"}},
+                         "what a hit looks like: its cosine, or the cosine times a colour by distance with the scene's "
+                         "parameters (default: as the scene says)");
+  verb.add_option_function<std::string>(
+          "--size",
+          [&options](const std::string& text) { std::tie(options.width, options.height) = parseSize("--size", text); },
+          "pixels of the image; opening angles stay (default: as the scene says)")
+      ->type_name("WxH");
+  verb.add_option_function<int>(
+          "--samples",
+          [&options](int n) {
+            if (n < 1 || n > kMostSamples)
+              throw Error(Exit::usage, "--samples: " + std::to_string(n) + " is out of range, expected 1 to " +
+                                           std::to_string(kMostSamples) + " (a grid of N x N in the pixel)");
+            options.samples = n;
+          },
+          "regular N x N grid in the pixel; 1 is its centre (default 1)")
+      ->type_name("N");
+  verb.add_flag("--two-sided", options.twoSided, "|d.n| instead of max(0, -d.n): open surfaces seen from behind");
+  verb.add_option_function<std::string>(
+          "--crop", [&options](const std::string& text) { options.crop = parseCrop("--crop", text); },
+          "only this part; its pixels are the whole image's")
+      ->type_name("X,Y,W,H");
+}
+
+void addCastingOptions(CLI::App& verb, CastingOptions& options) {
+  verb.add_option("--device", options.device,
+                  "Vulkan device by number, part of its name, cpu or gpu, see the verb devices "
+                  "(default: a GPU before a CPU)")
+      ->type_name("N|NAME|cpu|gpu");
+  addChoice<Method>(verb, "--method", options.cast.method,
+                    {{"naive", Method::naive}, {"fast", Method::fast}, {"exact", Method::exact}},
+                    "arithmetic of the GPU side (default exact)");
+  addChoice<Arithmetic>(verb, "--arithmetic", options.cast.arithmetic,
+                        {{"auto", Arithmetic::automatic}, {"fp64", Arithmetic::fp64}, {"df32", Arithmetic::df32}},
+                        "what exact computes with; auto takes fp64 where the device has it (default auto)");
+  addChoice<reference::Precision>(
+      verb, "--precision", options.precision,
+      {{"f32", reference::Precision::f32}, {"f64", reference::Precision::f64}, {"f128", reference::Precision::f128}},
+      "number type of the CPU reference (default f64)");
+  verb.add_option("--shaders", options.cast.shaderFolder,
+                  "compile the shaders from this folder instead of those carried in the program")
+      ->type_name("DIR");
+  addChoice<gpu::Validation>(
+      verb, "--validation", options.validation,
+      {{"auto", gpu::Validation::automatic}, {"on", gpu::Validation::on}, {"off", gpu::Validation::off}},
+      "Vulkan validation layer; auto: where installed and SOLIDCAST_VALIDATION=1 (default auto)");
+}
+
+void addBackend(CLI::App& verb, Backend& backend) {
+  addChoice<Backend>(verb, "--backend", backend, {{"gpu", Backend::gpu}, {"cpu", Backend::cpu}},
+                     "cast on a Vulkan device, or by the CPU reference (default gpu)");
+}
+
+void checkBackend(const CLI::App& verb, Backend backend) {
+  if (backend == Backend::gpu) {
+    if (verb.count("--precision") > 0)
+      throw Error(Exit::usage,
+                  "--precision: chooses the number type of the CPU reference, expected --backend cpu with it");
+    return;
+  }
+  for (const char* option : {"--device", "--method", "--arithmetic", "--shaders"})
+    if (verb.count(option) > 0)
+      throw Error(Exit::usage,
+                  std::string(option) + ": has no meaning for the CPU reference, expected --backend gpu with it");
+}
+
+Scene loadWithWarnings(const std::string& file) {
+  std::vector<std::string> warnings;
+  Scene scene = loadScene(file, warnings);
+  for (const std::string& warning : warnings) note("warning: " + warning);
+  return scene;
+}
+
+void apply(const ImageOptions& options, Scene& scene) {
+  if (options.integrator == "casting") scene.integrator = RayCastingIntegrator{};
+  if (options.integrator == "castingdist") {
+    if (!scene.distParameters)
+      throw Error(Exit::usage, scene.file +
+                                   ": the scene gives no distances and colours for --integrator castingdist, expected "
+                                   "\"castingdist\": {near_color, near_dist, far_color, far_dist}");
+    scene.integrator = *scene.distParameters;
+  }
+  if (options.width > 0) {
+    scene.width = options.width;
+    scene.height = options.height;
+  }
+}
+
+RenderJob makeJob(const ImageOptions& options, const Scene& scene, const Channels& channels) {
+  const Crop& crop = options.crop;
+  if (crop.width > 0 && (crop.width > scene.width - crop.x || crop.height > scene.height - crop.y))
+    throw Error(Exit::usage, "--crop: " + std::to_string(crop.x) + "," + std::to_string(crop.y) + "," +
+                                 std::to_string(crop.width) + "," + std::to_string(crop.height) +
+                                 " reaches outside the image, expected a part of " + std::to_string(scene.width) + "x" +
+                                 std::to_string(scene.height));
+  return {scene.width, scene.height, crop, options.samples, scene.twoSided || options.twoSided, channels};
+}
+
+std::unique_ptr<gpu::Device> openDevice(const CastingOptions& options) {
+  auto device = std::make_unique<gpu::Device>(gpu::Device::Options{options.device, options.validation});
+  const gpu::DeviceInfo& info = device->info();
+  note("device " + std::to_string(info.index) + ": " + info.name + " (" + info.driver +
+       (info.driverInfo.empty() ? "" : " " + info.driverInfo) + ", Vulkan " + info.apiVersion + ")");
+  return device;
+}
+
+std::string cpuName(reference::Precision precision) {
+  const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
+  return std::string("CPU reference, ") + precisionName(precision) + ", " + std::to_string(threads) +
+         (threads == 1 ? " thread" : " threads");
+}
+
+const char* precisionName(reference::Precision precision) {
+  switch (precision) {
+    case reference::Precision::f32:
+      return "f32";
+    case reference::Precision::f64:
+      return "f64";
+    case reference::Precision::f128:
+      return "f128";
+  }
+  return "";
+}
+
+void note(const std::string& line) {
+  const std::string text = "solidcast: " + line + "\n";
+  // A lost message is no reason to stop: nobody is there to be told.
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+}
+
+}  // namespace solidcast::cli

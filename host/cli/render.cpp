@@ -1,0 +1,160 @@
+// `solidcast render`: a scene file to images, on a Vulkan device or by the CPU reference.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "host/cli/clock.h"
+#include "host/cli/options.h"
+#include "host/cli/progress.h"
+#include "host/cli/render_stats.h"
+#include "host/cli/verbs.h"
+#include "host/error.h"
+#include "host/image/writer.h"
+
+namespace solidcast::cli {
+namespace {
+
+constexpr char kFooter[] =
+    R"(Images by the file's ending: .png (8 bit, truncated, no gamma), .pfm (float32, for comparing), .hdr (Radiance).
+"-o -" writes a PNG to standard output. --aov writes further channels beside the image, out.pfm -> out.normal.pfm.
+An image appears under its name only when it is whole.
+
+Examples:
+  solidcast render scenes/a_solids.json
+  solidcast render scenes/a_solids.json -o a2-2.png --integrator castingdist
+  solidcast render scene.json -o out.pfm --size 1920x1080 --samples 4 --aov normal,distance
+  solidcast render scene.json -o part.png --crop 100,50,64,64 --backend cpu --precision f128
+  solidcast render scene.json --stats --json | jq .dispatch_ms)";
+
+struct Render {
+  std::string scene, output;
+  std::vector<std::string> aov;
+  bool stats = false, json = false;
+  Backend backend = Backend::gpu;
+  ImageOptions image;
+  CastingOptions casting;
+};
+
+struct Output {
+  std::string path;
+  ImageKind kind;
+};
+
+/// "scenes/a_solids.json" -> "a_solids.png" in the current folder.
+std::string defaultOutput(const std::string& scene) {
+  return scene == "-" ? "out.png" : std::filesystem::path(scene).stem().string() + ".png";
+}
+
+std::vector<Output> outputs(const Render& render) {
+  const std::string path = render.output.empty() ? defaultOutput(render.scene) : render.output;
+  std::vector<Output> list{{path, ImageKind::radiance}};
+  for (const std::string& name : render.aov) {
+    const ImageKind kind = imageKindByName(name);
+    const bool known = std::any_of(list.begin(), list.end(), [kind](const Output& o) { return o.kind == kind; });
+    if (!known) list.push_back({imagePathFor(path, kind), kind});
+  }
+  return list;
+}
+
+/// Casts the job on the chosen backend; fills in the statistics' casting part.
+void cast(const Render& render, const Scene& scene, const RenderJob& job, gpu::Device* device, const BandSink& sink,
+          RenderStats& stats) {
+  Progress bar;
+  if (device != nullptr) {
+    renderGpu(*device, scene, job, render.casting.cast, sink, stats.cast, [&](double fraction) { bar.show(fraction); });
+    return;
+  }
+  const double before = sinceProcessStart();
+  double sinking = 0;
+  std::mutex mutex;  // rows end on several threads
+  const BandSink timed = [&](Band& band) {
+    const double start = sinceProcessStart();
+    sink(band);
+    sinking += sinceProcessStart() - start;
+  };
+  reference::render(scene, job, render.casting.precision, timed, 0, [&](int done, int total) {
+    const std::lock_guard lock(mutex);
+    bar.show(static_cast<double>(done) / total);
+  });
+  stats.cast.dispatch_ms = sinceProcessStart() - before - sinking;
+  const std::uint64_t pixels = std::uint64_t(stats.width) * std::uint64_t(stats.height);
+  stats.cast.rays = pixels * std::uint64_t(job.samples) * std::uint64_t(job.samples);
+}
+
+void run(const CLI::App& verb, const Render& render) {
+  checkBackend(verb, render.backend);
+  const std::vector<Output> list = outputs(render);
+  if (render.json && list.front().path == "-")
+    throw Error(Exit::usage,
+                "--json: standard output cannot hold both the image and the JSON, expected -o FILE with it");
+
+  RenderStats stats;
+  const double beforeScene = sinceProcessStart();
+  Scene scene = loadWithWarnings(render.scene);
+  apply(render.image, scene);
+  stats.scene_ms = sinceProcessStart() - beforeScene;
+
+  Channels channels;
+  for (const Output& output : list) addChannel(channels, imageFormat(output.path), output.kind);
+  const RenderJob job = makeJob(render.image, scene, channels);
+  stats.width = job.crop.width > 0 ? job.crop.width : job.width;
+  stats.height = job.crop.width > 0 ? job.crop.height : job.height;
+
+  std::vector<ImageWriter> writers;
+  for (const Output& output : list) {
+    writers.emplace_back(output.path, stats.width, stats.height, output.kind);
+    stats.outputs.push_back(output.path);
+  }
+  std::unique_ptr<gpu::Device> device;
+  if (render.backend == Backend::gpu) device = openDevice(render.casting);
+  else note(cpuName(render.casting.precision));
+
+  const BandSink sink = [&](Band& band) {
+    for (ImageWriter& writer : writers) writer.rows(band);
+  };
+  cast(render, scene, job, device.get(), sink, stats);
+  for (ImageWriter& writer : writers) {
+    writer.finish();
+    stats.encode_ms += writer.encodeMilliseconds();
+    stats.write_ms += writer.writeMilliseconds();
+  }
+  if (!render.stats && !render.json) return;
+  stats.scene = scene.file;
+  stats.solids = scene.world.solids.size();
+  stats.deviceName = device ? device->info().name : cpuName(render.casting.precision);
+  stats.driver = device ? device->info().driver + " " + device->info().driverInfo : "";
+  stats.instance_ms = device ? device->instanceMilliseconds() : 0;
+  stats.device_ms = device ? device->deviceMilliseconds() : 0;
+  stats.deviceBytesPeak = device ? device->peakBytes() : 0;
+  stats.whole_ms = sinceProcessStart();
+  if (render.json) printJson(stats);
+  else printTable(stats);
+}
+
+}  // namespace
+
+void addRender(CLI::App& app) {
+  auto render = std::make_shared<Render>();
+  CLI::App* verb = app.add_subcommand("render", "render a scene to an image");
+  verb->footer(kFooter);
+  verb->add_option("SCENE", render->scene, "scene file (JSON); - is standard input")->required();
+  verb->add_option("-o,--output", render->output,
+                   "image file; - is standard output (default: the scene's name with .png, in the current folder)")
+      ->type_name("FILE");
+  verb->add_option("--aov", render->aov, "also write these channels: distance,normal,solid,local,position")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("LIST");
+  addBackend(*verb, render->backend);
+  addImageOptions(*verb, render->image);
+  addCastingOptions(*verb, render->casting);
+  verb->add_flag("--stats", render->stats, "print phases, sizes, the plan and what was left out");
+  verb->add_flag("--json", render->json, "print the statistics as JSON on standard output");
+  verb->callback([verb, render] { run(*verb, *render); });
+}
+
+}  // namespace solidcast::cli
