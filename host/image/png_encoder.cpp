@@ -1,0 +1,212 @@
+// PNG, 8-bit RGB. libspng encodes on one core and at half the speed of what a render takes, so the container is
+// written here (PNG specification, third edition, chapters 5, 7.2 and 10) around zlib: the rows are cut into segments
+// that are compressed side by side. A segment ends on a byte boundary (Z_SYNC_FLUSH) and starts with an empty window,
+// so that the segments put one after the other are one deflate stream.
+//
+// Filter "sub" and level 1: the fastest of all filters and strategies on renders, and smaller than level 1 without a
+// filter. "sub" looks at its own row only, so a segment needs nothing of its neighbours.
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "host/image/encoders.h"
+
+namespace solidcast {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::size_t kSegmentBytes = std::size_t{256} << 10;  // before compression
+constexpr std::size_t kSegmentsAtOnce = 64;                    // bounds the memory for compressed segments
+constexpr int kLevel = 1;
+constexpr std::uint8_t kFilterSub = 1;
+
+void putBig(std::uint8_t* to, std::uint32_t value) {
+  for (int i = 0; i < 4; ++i) to[i] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
+}
+
+/// One thread's zlib state, used for one segment after the other.
+class Deflater {
+ public:
+  Deflater() {
+    if (deflateInit2(&stream_, kLevel, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY) != Z_OK)
+      throw std::runtime_error("zlib cannot be set up");
+  }
+  ~Deflater() { deflateEnd(&stream_); }
+  Deflater(const Deflater&) = delete;
+
+  /// Appends the compressed bytes to `out`.
+  void compress(const Bytes& in, bool last, Bytes& out) {
+    deflateReset(&stream_);
+    const std::size_t start = out.size();
+    out.resize(start + deflateBound(&stream_, in.size()) + 16);  // 16: the flush's empty block
+    stream_.next_in = const_cast<Bytef*>(in.data());
+    stream_.avail_in = static_cast<uInt>(in.size());
+    stream_.next_out = out.data() + start;
+    stream_.avail_out = static_cast<uInt>(out.size() - start);
+    const int state = deflate(&stream_, last ? Z_FINISH : Z_SYNC_FLUSH);
+    if (state != (last ? Z_STREAM_END : Z_OK) || stream_.avail_in != 0) throw std::runtime_error("zlib failed");
+    out.resize(out.size() - stream_.avail_out);
+  }
+
+ private:
+  z_stream stream_{};
+};
+
+struct Segment {
+  Bytes chunk;            // length, "IDAT", compressed rows; checksum not yet
+  uLong adler = 0;        // of the filtered rows
+  std::size_t bytes = 0;  // of the filtered rows
+};
+
+class PngEncoder final : public RowEncoder {
+ public:
+  PngEncoder(OutputFile& file, int width, int height)
+      : file_(file),
+        rowBytes_(3 * static_cast<std::size_t>(width)),
+        segmentRows_(std::max<std::size_t>(1, kSegmentBytes / rowBytes_)),
+        rowsLeft_(static_cast<std::size_t>(height)) {
+    constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    file_.append(kSignature.data(), kSignature.size());
+    Bytes header(13);
+    putBig(&header[0], static_cast<std::uint32_t>(width));
+    putBig(&header[4], static_cast<std::uint32_t>(height));
+    header[8] = 8;  // bits
+    header[9] = 2;  // RGB; then deflate, the five standard filters, not interlaced: 0, 0, 0
+    writeChunk("IHDR", header);
+  }
+
+  using RowEncoder::rows;
+  void rows(const std::uint8_t* pixels, int count) override {
+    std::size_t left = static_cast<std::size_t>(count);
+    while (left > 0) {
+      // Whole segments straight from the caller's rows; what is left over waits for the next ones.
+      const std::size_t wanted = std::min(segmentRows_, rowsLeft_);
+      if (waiting_.empty() && left >= wanted) {
+        const std::size_t most = kSegmentsAtOnce * segmentRows_;
+        const std::size_t taken = std::min({left == rowsLeft_ ? left : left / segmentRows_ * segmentRows_, most});
+        encodeSegments(pixels, taken);
+        pixels += taken * rowBytes_;
+        left -= taken;
+        continue;
+      }
+      const std::size_t taken = std::min(left, wanted - waiting_.size() / rowBytes_);
+      waiting_.insert(waiting_.end(), pixels, pixels + taken * rowBytes_);
+      pixels += taken * rowBytes_;
+      left -= taken;
+      if (waiting_.size() == wanted * rowBytes_) {
+        encodeSegments(waiting_.data(), wanted);
+        waiting_.clear();
+      }
+    }
+  }
+
+  void finish() override { writeChunk("IEND", {}); }
+
+ private:
+  /// `count` rows: whole segments, or all that is left of the image.
+  void encodeSegments(const std::uint8_t* pixels, std::size_t count) {
+    const std::size_t segments = (count + segmentRows_ - 1) / segmentRows_;
+    std::vector<Segment> done(segments);
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+      Deflater deflater;
+      Bytes filtered;
+      for (std::size_t i = next++; i < segments; i = next++) {
+        const std::size_t first = i * segmentRows_, rows = std::min(segmentRows_, count - first);
+        filter(pixels + first * rowBytes_, rows, filtered);
+        const bool start = firstSegment_ && i == 0, last = first + rows == rowsLeft_;
+        done[i] = compressed(deflater, filtered, start, last);
+      }
+    };
+    runOnAllCores(work, segments);
+    for (Segment& segment : done) {
+      adler_ = adler32_combine(adler_, segment.adler, static_cast<z_off_t>(segment.bytes));
+      rowsLeft_ -= segment.bytes / (rowBytes_ + 1);
+      writeSegment(segment, rowsLeft_ == 0);
+    }
+    firstSegment_ = false;
+  }
+
+  template <class Work>
+  static void runOnAllCores(const Work& work, std::size_t segments) {
+    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+    std::vector<std::exception_ptr> failures(std::min(cores, segments));
+    std::vector<std::jthread> helpers;
+    const auto guarded = [&](std::size_t which) {
+      try {
+        work();
+      } catch (...) { failures[which] = std::current_exception(); }
+    };
+    for (std::size_t i = 1; i < failures.size(); ++i) helpers.emplace_back(guarded, i);
+    guarded(0);
+    helpers.clear();
+    for (const std::exception_ptr& failure : failures)
+      if (failure) std::rethrow_exception(failure);
+  }
+
+  void filter(const std::uint8_t* pixels, std::size_t rows, Bytes& out) const {
+    out.resize(rows * (rowBytes_ + 1));
+    std::uint8_t* to = out.data();
+    for (std::size_t row = 0; row < rows; ++row, pixels += rowBytes_) {
+      *to++ = kFilterSub;
+      std::memcpy(to, pixels, 3);
+      for (std::size_t i = 3; i < rowBytes_; ++i) to[i] = static_cast<std::uint8_t>(pixels[i] - pixels[i - 3]);
+      to += rowBytes_;
+    }
+  }
+
+  static Segment compressed(Deflater& deflater, const Bytes& filtered, bool first, bool last) {
+    Segment segment;
+    segment.bytes = filtered.size();
+    segment.adler = adler32(1, filtered.data(), static_cast<uInt>(filtered.size()));
+    segment.chunk = {0, 0, 0, 0, 'I', 'D', 'A', 'T'};
+    if (first) segment.chunk.insert(segment.chunk.end(), {0x78, 0x01});  // zlib: window of 32 KiB, fastest
+    deflater.compress(filtered, last, segment.chunk);
+    return segment;
+  }
+
+  void writeSegment(Segment& segment, bool last) {
+    if (last) {
+      segment.chunk.resize(segment.chunk.size() + 4);
+      putBig(&segment.chunk[segment.chunk.size() - 4], static_cast<std::uint32_t>(adler_));
+    }
+    writeChunk(segment.chunk);
+  }
+
+  void writeChunk(const char* name, const Bytes& content) {
+    Bytes chunk(4);
+    chunk.insert(chunk.end(), name, name + 4);
+    chunk.insert(chunk.end(), content.begin(), content.end());
+    writeChunk(chunk);
+  }
+
+  /// Length and checksum are put in here.
+  void writeChunk(Bytes& chunk) {
+    putBig(chunk.data(), static_cast<std::uint32_t>(chunk.size() - 8));
+    const uLong checksum = crc32(0, chunk.data() + 4, static_cast<uInt>(chunk.size() - 4));
+    chunk.resize(chunk.size() + 4);
+    putBig(&chunk[chunk.size() - 4], static_cast<std::uint32_t>(checksum));
+    file_.append(chunk.data(), chunk.size());
+  }
+
+  OutputFile& file_;
+  std::size_t rowBytes_, segmentRows_, rowsLeft_;
+  Bytes waiting_;  // rows of a segment that is not complete yet
+  uLong adler_ = 1;
+  bool firstSegment_ = true;
+};
+
+}  // namespace
+
+std::unique_ptr<RowEncoder> makePngEncoder(OutputFile& file, int width, int height) {
+  return std::make_unique<PngEncoder>(file, width, height);
+}
+
+}  // namespace solidcast
