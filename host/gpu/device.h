@@ -51,12 +51,14 @@ class Buffer {  // host-visible, persistently mapped; moved, never copied
 
  private:
   friend class Device;
-  friend class Pipeline;
+  friend class Runner;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-enum class BufferUse { uniform, storage };
+/// `readback` is a storage buffer that shaders write and the host reads: on a discrete GPU it lies in cached host
+/// memory, the others in the device's own memory where that can be mapped.
+enum class BufferUse { uniform, storage, readback };
 
 class Pipeline {
  public:
@@ -66,6 +68,7 @@ class Pipeline {
 
  private:
   friend class Device;
+  friend class Runner;
   struct Impl;
   explicit Pipeline(std::unique_ptr<Impl>);
   std::unique_ptr<Impl> impl_;
@@ -93,16 +96,22 @@ class Device {
   /// Number of validation messages of warning or error severity so far (each was printed on standard error).
   int validationMessages() const;
 
+  /// Contents are undefined. A size beyond the device's limits throws Exit::usage with both numbers.
   Buffer makeBuffer(std::size_t bytes, BufferUse use);
   std::uint64_t bytesAllocated() const;  // by makeBuffer, alive now
   std::uint64_t peakBytes() const;
 
   /// The set-0 bindings (kind and number) and push constant size are read from the SPIR-V itself.
   /// `needsFloat64` and the like are read from its capabilities: missing ones throw Exit::noDevice with the feature's name.
+  /// A workgroup beyond the device's limits throws Exit::noDevice with both numbers; SPIR-V that is no compute module
+  /// Exit::shader.
   Pipeline makePipeline(std::span<const std::uint32_t> spirv, const Specialisation& specialisation = {});
 
   /// Runs the dispatches in order, each after the writes of the one before; waits for the end.
-  /// Returns GPU time in ms by timestamps (wall time where there are none).
+  /// Returns GPU time in ms by timestamps (wall time where there are none). Push constants may be longer than the
+  /// shader's block (a host struct's padding), never shorter. Not for several threads at once.
+  /// Throws Exit::shader where buffers or push constants do not fit the shader, Exit::usage (with both numbers) for
+  /// more groups than the device allows.
   double run(std::span<const Dispatch> dispatches);
 
   double instanceMilliseconds() const;
