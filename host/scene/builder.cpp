@@ -26,10 +26,10 @@ std::string SceneBuilder::where() const {
 }
 
 bool SceneBuilder::add(Json value) {
-  if (levels_.empty()) throw Fault{"", "wrong type, " + typeName(value) + ", expected an object"};
+  if (levels_.empty()) throw Fault{"", "wrong type: " + typeName(value) + ", expected an object"};
   Level& level = levels_.back();
   if (level.role == Role::solidList)
-    throw Fault{where(), "wrong type, " + typeName(value) + ", expected an object that is a solid or a group"};
+    throw Fault{where(), "wrong type: " + typeName(value) + ", expected an object that is a solid or a group"};
   if (level.value.is_array()) {
     if (++level.index > kMaxListLength)
       throw Fault{where(), "the list is longer than any field's, expected at most " + std::to_string(kMaxListLength) +
@@ -38,7 +38,7 @@ bool SceneBuilder::add(Json value) {
     return true;
   }
   if (level.role != Role::value && level.key == "solids")
-    throw Fault{where(), "wrong type, " + typeName(value) + ", expected a list of solids"};
+    throw Fault{where(), "wrong type: " + typeName(value) + ", expected a list of solids"};
   level.value[level.key] = std::move(value);
   return true;
 }

@@ -32,7 +32,7 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 }
 
 double toNumber(const Json& value, const std::string& where) {
-  if (!value.is_number()) refuse(where, "wrong type, " + typeName(value) + ", expected a number");
+  if (!value.is_number()) refuse(where, "wrong type: " + typeName(value) + ", expected a number");
   const double number = value.get<double>();
   checkNumber(number, where);
   return number;
@@ -40,7 +40,7 @@ double toNumber(const Json& value, const std::string& where) {
 
 std::vector<double> toNumbers(const Json& value, std::size_t count, const std::string& where) {
   const std::string expected = ", expected a list of " + std::to_string(count) + " numbers";
-  if (!value.is_array()) refuse(where, "wrong type, " + typeName(value) + expected);
+  if (!value.is_array()) refuse(where, "wrong type: " + typeName(value) + expected);
   if (value.size() != count) refuse(where, "a list of " + std::to_string(value.size()) + expected);
   std::vector<double> numbers;
   for (std::size_t i = 0; i < count; ++i) numbers.push_back(toNumber(value[i], where + numbered("/", i)));
@@ -101,7 +101,7 @@ std::string typeName(const Json& value) {
 }
 
 Fields::Fields(const Json& value, std::string where) : object_(value), where_(std::move(where)) {
-  if (!value.is_object()) refuse(where_, "wrong type, " + typeName(value) + ", expected an object");
+  if (!value.is_object()) refuse(where_, "wrong type: " + typeName(value) + ", expected an object");
 }
 
 void Fields::onlyKeys(const Names& known) const {
@@ -120,20 +120,20 @@ double Fields::number(std::string_view key) const { return toNumber(need(key, "a
 
 bool Fields::flag(std::string_view key) const {
   const Json& value = need(key, "true or false");
-  if (!value.is_boolean()) refuse(where(key), "wrong type, " + typeName(value) + ", expected true or false");
+  if (!value.is_boolean()) refuse(where(key), "wrong type: " + typeName(value) + ", expected true or false");
   return value.get<bool>();
 }
 
 std::string Fields::text(std::string_view key) const {
   const Json& value = need(key, "a text");
-  if (!value.is_string()) refuse(where(key), "wrong type, " + typeName(value) + ", expected a text");
+  if (!value.is_string()) refuse(where(key), "wrong type: " + typeName(value) + ", expected a text");
   return value.get<std::string>();
 }
 
 std::string Fields::choice(std::string_view key, const char* what, const Names& names) const {
   const Json& value = need(key, "the name of a " + std::string(what));
   if (!value.is_string())
-    refuse(where(key), "wrong type, " + typeName(value) + ", expected the name of a " + std::string(what));
+    refuse(where(key), "wrong type: " + typeName(value) + ", expected the name of a " + std::string(what));
   const std::string chosen = value.get<std::string>();
   if (std::find(names.begin(), names.end(), chosen) == names.end())
     refuse(where(key), std::string("unknown ") + what + " " + inQuotes(chosen) + ", expected " + oneOf(chosen, names));
@@ -150,7 +150,7 @@ std::array<Triple, 3> Fields::threePoints(std::string_view key) const {
   const Json& value = need(key, "three points");
   if (!value.is_array() || value.size() != 3)
     refuse(where(key),
-           (value.is_array() ? "a list of " + std::to_string(value.size()) : "wrong type, " + typeName(value)) +
+           (value.is_array() ? "a list of " + std::to_string(value.size()) : "wrong type: " + typeName(value)) +
                ", expected three points of three numbers");
   std::array<Triple, 3> points;
   for (std::size_t i = 0; i < 3; ++i) points[i] = toTriple(value[i], where(key) + numbered("/", i));

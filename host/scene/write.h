@@ -1,0 +1,16 @@
+// Scenes back to files. What is written reads back as the same scene, bit for bit.
+#pragma once
+#include <functional>
+#include <string_view>
+
+#include "host/scene/world.h"
+
+namespace solidcast {
+
+/// Called with consecutive pieces of the file, so that a scene of millions of solids is never in memory as text.
+using TextSink = std::function<void(std::string_view)>;
+
+/// Writes JSON as in docs/scene-format.md, one solid a line. `comment` becomes the first lines, each after "// ".
+void writeScene(const Scene& scene, std::string_view comment, const TextSink& sink);
+
+}  // namespace solidcast
