@@ -74,13 +74,12 @@ void addImageOptions(CLI::App& verb, ImageOptions& options) {
           [&options](const std::string& text) { std::tie(options.width, options.height) = parseSize("--size", text); },
           "pixels of the image; opening angles stay (default: as the scene says)")
       ->type_name("WxH");
-  verb.add_option_function<int>(
+  verb.add_option_function<std::string>(
           "--samples",
-          [&options](int n) {
-            if (n < 1 || n > kMostSamples)
-              throw Error(Exit::usage, "--samples: " + std::to_string(n) + " is out of range, expected 1 to " +
+          [&options](const std::string& text) {
+            if (!wholeNumbers(text, ' ', &options.samples, 1) || options.samples < 1 || options.samples > kMostSamples)
+              throw Error(Exit::usage, "--samples: \"" + text + "\" is no number of samples, expected 1 to " +
                                            std::to_string(kMostSamples) + " (a grid of N x N in the pixel)");
-            options.samples = n;
           },
           "regular N x N grid in the pixel; 1 is its centre (default 1)")
       ->type_name("N");

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -74,7 +75,7 @@ void printJson(const RenderStats& s) {
   json["width"] = s.width;
   json["height"] = s.height;
   json["module"] = s.cast.module;
-  for (const auto& [name, ms] : phases(s)) json[name] = ms;
+  for (const auto& [name, ms] : phases(s)) json[name] = std::round(ms * 1e4) / 1e4;
   for (const auto& [name, count] : counts(s)) json[name] = count;
   json["plan"] = s.cast.plan;
   json["left_out"] = s.cast.leftOut;
