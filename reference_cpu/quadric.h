@@ -1,6 +1,8 @@
 // Quadric Q(p) = ax^2 + by^2 + cz^2 + dxy + exz + fyz + gx + hy + iz + j = 0. Along a ray this is A t^2 + 2 B t + C = 0
 // with A the quadratic part at d, B = d.grad Q(o) / 2, C = Q(o). With D = B^2 - A C and q = -(B + sign(B) sqrt(D))
-// the roots are q / A and C / q: no sum that cancels, and a vanishing or tiny A only sends q / A to infinity.
+// the roots are q / A and C / q: no sum that cancels, and a vanishing or tiny A only sends q / A to infinity. D itself
+// cancels where the origin is far away; completing the square gives it a second form, -A Q(m) with m the point of the
+// ray halfway between the roots, and the form with the smaller terms is taken.
 // A ray inside the surface (A = B = C = 0) misses. The normal is the gradient; where it vanishes (a cone's apex, a
 // double plane) the normal points back along the ray.
 #pragma once
@@ -25,17 +27,17 @@ class Quadric final : public Solid<T> {
 
   Intersection<T> intersect(const Ray<T>& ray, const T& previousBestDistance) const override {
     const Vec<T>&o = ray.origin, &d = ray.direction;
-    const T A = quadraticPart(d);
+    const T A = quadraticPart(d).value;
     const T B = dot(d, gradient(o)) / 2;
-    const T C = quadraticPart(o) + (q_[6] * o.x + q_[7] * o.y + q_[8] * o.z) + q_[9];
-    const T discriminant = B * B - A * C;
+    const Sum C = equation(o);
+    const T discriminant = this->discriminant(ray, A, B, C);
     if (!(discriminant >= 0)) return Intersection<T>::failure();
 
     const T root = sqrt(discriminant);
     const T q = B < 0 ? root - B : -(root + B);
     T t = infinity<T>();
     if (q != 0) {
-      const T other = C / q;
+      const T other = C.value / q;
       if (other > 0) t = other;
     }
     if (A != 0) {
@@ -78,8 +80,44 @@ class Quadric final : public Solid<T> {
  private:
   static Vec<T> rounded(const Vec<Quadruple>& p) { return {T(p.x), T(p.y), T(p.z)}; }
 
-  T quadraticPart(const Vec<T>& p) const {
-    return p.x * (q_[0] * p.x + q_[3] * p.y + q_[4] * p.z) + p.y * (q_[1] * p.y + q_[5] * p.z) + q_[2] * p.z * p.z;
+  /// A sum and the size of its terms, which bounds its rounding error.
+  struct Sum {
+    T value = 0, magnitude = 0;
+    void add(const T& term) { value += term, magnitude += absolute(term); }
+  };
+
+  Sum quadraticPart(const Vec<T>& p) const {
+    Sum sum;
+    sum.add(q_[0] * p.x * p.x);
+    sum.add(q_[1] * p.y * p.y);
+    sum.add(q_[2] * p.z * p.z);
+    sum.add(q_[3] * p.x * p.y);
+    sum.add(q_[4] * p.x * p.z);
+    sum.add(q_[5] * p.y * p.z);
+    return sum;
+  }
+
+  /// Q(p).
+  Sum equation(const Vec<T>& p) const {
+    Sum sum = quadraticPart(p);
+    sum.add(q_[6] * p.x);
+    sum.add(q_[7] * p.y);
+    sum.add(q_[8] * p.z);
+    sum.add(q_[9]);
+    return sum;
+  }
+
+  T discriminant(const Ray<T>& ray, const T& A, const T& B, const Sum& C) const {
+    const T plain = B * B - A * C.value;
+    if (A == 0) return plain;
+    const T halfway = -B / A;
+    const Vec<T> m = ray.getPoint(halfway);
+    const Sum Qm = equation(m);
+    T error = Qm.magnitude;  // and what m's rounding adds, along the gradient
+    const Vec<T> g = gradient(m);
+    for (int i = 0; i < 3; ++i)
+      error += absolute(g[i]) * (absolute(ray.origin[i]) + absolute(halfway * ray.direction[i]));
+    return absolute(A) * error < B * B + absolute(A) * C.magnitude ? -A * Qm.value : plain;
   }
 
   Vec<T> gradient(const Vec<T>& p) const {
