@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "host/cli/verbs.h"
@@ -12,6 +13,8 @@ namespace solidcast::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::uint32_t longLoop = 1'000'000;  // iterations; known drivers cut at 65,535 or not at all
 
 Json toJson(const gpu::ArithmeticReport& report) {
   return {{"cases", report.cases},
@@ -100,15 +103,18 @@ void listAll(bool asJson) {
     const gpu::ArithmeticReport single = gpu::probeArithmetic(device, false);
     gpu::ArithmeticReport twice;
     if (info.float64) twice = gpu::probeArithmetic(device, true);
+    const std::uint32_t iterations = gpu::loopIterations(device, longLoop);
     if (asJson) {
       Json entry = toJson(info);
       entry["arithmetic"]["float32"] = toJson(single);
       if (info.float64) entry["arithmetic"]["float64"] = toJson(twice);
+      entry["loop_cut_at"] = iterations < longLoop ? Json(iterations) : Json(nullptr);
       list.push_back(std::move(entry));
     } else {
       print(info);
       printArithmetic("fp32", single);
       if (info.float64) printArithmetic("fp64", twice);
+      if (iterations < longLoop) std::cout << "   loops are cut off in silence after " << iterations << " iterations\n";
     }
   }
   if (asJson) std::cout << list.dump(2) << "\n";

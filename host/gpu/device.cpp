@@ -5,6 +5,7 @@
 
 #include "host/error.h"
 #include "host/gpu/core.h"
+#include "host/gpu/select.h"
 
 namespace solidcast::gpu {
 
@@ -71,6 +72,13 @@ void Core::findQueueFamily() {
   }
   if (!found) throw Error(Exit::noDevice, "device " + info.name + " has no queue that computes");
   if (timestampBits == 0) info.limits.timestampPeriod = 0;
+}
+
+std::vector<DeviceInfo> listDevices() {
+  const Instance instance(Validation::off);
+  std::vector<DeviceInfo> list;
+  for (VkPhysicalDevice device : instance.devices()) list.push_back(instance.describe(device, int(list.size())));
+  return list;
 }
 
 Device::Device(const Options& options) {

@@ -80,7 +80,7 @@ std::string reshaped(const std::string& log, const std::string& name) {
     if (!out.empty()) out += '\n';
     if (std::regex_match(line, part, placed)) {
       out += part[1].str() + ":" + part[2].str() + ": error: ";
-      if (part[3].length() > 0) out += "'" + part[3].str() + "': ";
+      if (part[3].length() > 0) out.append(1, '\'').append(part[3]).append("': ");
       out += part[4];
     } else {
       out += name + ": error: " + line.substr(7);

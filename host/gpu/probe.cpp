@@ -151,4 +151,12 @@ ArithmeticReport probeArithmetic(Device& device, bool float64) {
   return float64 ? probe<double>(device) : probe<float>(device);
 }
 
+std::uint32_t loopIterations(Device& device, std::uint32_t wanted) {
+  Buffer count = device.makeBuffer(sizeof(std::uint32_t), BufferUse::readback);
+  const Pipeline pipeline = device.makePipeline(carriedModule("probe_loop"));
+  const Dispatch dispatch{&pipeline, {&count}, std::as_bytes(std::span(&wanted, 1)), {1, 1, 1}};
+  device.run({&dispatch, 1});
+  return count.as<std::uint32_t>()[0];
+}
+
 }  // namespace solidcast::gpu

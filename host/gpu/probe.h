@@ -28,4 +28,8 @@ struct ArithmeticReport {
 /// Throws Exit::noDevice where float64 is asked of a device without it.
 ArithmeticReport probeArithmetic(Device& device, bool float64);
 
+/// Iterations that a plain loop of one invocation makes when it is asked for `wanted` (runs probe_loop). lavapipe stops
+/// at 65,535, counted over all loops of the invocation, and says nothing; a shader that loops longer is wrong there.
+std::uint32_t loopIterations(Device& device, std::uint32_t wanted);
+
 }  // namespace solidcast::gpu

@@ -1,4 +1,5 @@
-// Which device is meant, and what people read when there is none.
+#include "host/gpu/select.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
@@ -6,7 +7,6 @@
 #include <sstream>
 
 #include "host/error.h"
-#include "host/gpu/vulkan.h"
 
 namespace solidcast::gpu {
 namespace {
@@ -105,13 +105,6 @@ std::size_t selectDevice(const std::vector<DeviceInfo>& devices, const std::stri
   }
   return *std::min_element(candidates.begin(), candidates.end(),
                            [&](std::size_t a, std::size_t b) { return rank(devices[a]) < rank(devices[b]); });
-}
-
-std::vector<DeviceInfo> listDevices() {
-  const Instance instance(Validation::off);
-  std::vector<DeviceInfo> list;
-  for (VkPhysicalDevice device : instance.devices()) list.push_back(instance.describe(device, int(list.size())));
-  return list;
 }
 
 }  // namespace solidcast::gpu

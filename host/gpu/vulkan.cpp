@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "host/error.h"
+#include "host/gpu/select.h"
 
 namespace solidcast::gpu {
 namespace {

@@ -5,7 +5,6 @@
 #include <vulkan/vulkan.h>
 
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -138,11 +137,5 @@ class Instance {
   int messages_ = 0;
   double milliseconds_ = 0;
 };
-
-/// Index of the device meant by `select` (see Device::Options); throws Exit::usage with the list of what there is.
-std::size_t selectDevice(const std::vector<DeviceInfo>& devices, const std::string& select);
-
-/// One line: what was looked for, which driver files were seen, what to install.
-std::string noDeviceMessage(const std::string& why);
 
 }  // namespace solidcast::gpu
