@@ -1,8 +1,11 @@
 // The course's scene, pixel by pixel: what its reference images prove.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
+#include <string>
 
 #include "tests/reference/scenes.h"
 
