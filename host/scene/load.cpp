@@ -75,6 +75,7 @@ bool isNonFinite(std::string word) {
     at = text.rfind(number, at);
     reason = "number " + inQuotes(number) + " is beyond fp32, expected at most 3.4028234663852886e+38 in size";
   } else if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    at = 0;
     reason = "the file is empty, expected a JSON object";
   } else if (isNonFinite(word)) {
     at = wordBegin;
@@ -89,6 +90,12 @@ bool isNonFinite(std::string word) {
   refuse(file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + reason);
 }
 
+/// The place of a fault; a way through a thousand groups keeps its beginning and end.
+std::string place(const std::string& pointer) {
+  if (pointer.empty()) return "/";
+  return pointer.size() <= 160 ? pointer : pointer.substr(0, 60) + " ... " + pointer.substr(pointer.size() - 60);
+}
+
 }  // namespace
 
 Scene parseScene(const std::string& text, const std::string& file, std::vector<std::string>& warnings) {
@@ -98,9 +105,9 @@ Scene parseScene(const std::string& text, const std::string& file, std::vector<s
   SceneBuilder builder(scene, found);
   try {
     if (!Json::sax_parse(text, &builder, Json::input_format_t::json, true, true)) refuseSyntax(builder, text, file);
-  } catch (const Fault& fault) { refuse(file + ": " + (fault.where.empty() ? "/" : fault.where) + ": " + fault.text); }
+  } catch (const Fault& fault) { refuse(file + ": " + place(fault.where) + ": " + fault.text); }
   for (std::size_t i = 0; i < std::min(found.size(), kMaxWarnings); ++i)
-    warnings.push_back(file + ": " + found[i].where + ": " + found[i].text);
+    warnings.push_back(file + ": " + place(found[i].where) + ": " + found[i].text);
   if (found.size() > kMaxWarnings)
     warnings.push_back(file + ": " + std::to_string(found.size() - kMaxWarnings) + " more warnings of this kind");
   return scene;
