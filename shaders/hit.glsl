@@ -41,8 +41,7 @@ Best noHit() {
 #endif
 }
 
-// A sign of `value` was used whose rounding error is at most DOUBT |d|^2 / weight. NaN (root of a negative number:
-// that sign was counted already) leaves the margin alone.
+// A sign of `value` was used whose rounding error is at most DOUBT |d|^2 / weight.
 void decided(inout Best best, real value, real weight) {
 #ifdef EXACT
   real m = mul(magnitude(value), weight);
@@ -73,6 +72,11 @@ struct FreeRay {
   real reach;               // |origin|, for error scales
 };
 
+// Size of the terms behind f = point - origin, for error scales. A query's origin (fp32) and the world's numbers (fp64)
+// are exact, so that f has one rounding of its own size; a camera's grid of origins and its records are rounded before.
+#ifndef ORIGIN_EXACT
+#define ORIGIN_EXACT 0
+#endif
 real dot3(real3 a, real3 b) { return linear(a, b); }
 real3 cross3(real3 a, real3 b) {
   precise real3 r = real3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
@@ -83,6 +87,13 @@ real3 minus3(real3 a, real3 b) {
   return r;
 }
 real length3(real3 a) { return root(dot3(a, a)); }
+real originScale(FreeRay ray, real3 point, real3 f) {
+#if ORIGIN_EXACT
+  return length3(f);
+#else
+  return length3(point) + ray.reach;
+#endif
+}
 real3 unit3(real3 a) {  // scaled first: squares of 1e30 overflow fp32
   real big = larger(larger(abs(a.x), abs(a.y)), abs(a.z));
   if (big == real(0)) return a;
@@ -91,10 +102,11 @@ real3 unit3(real3 a) {  // scaled first: squares of 1e30 overflow fp32
   precise real3 r = v / l;
   return r;
 }
-// Like decided(), with the scale known only here.
+// Like decided(), with the scale known only here. NaN (overflow) is doubt.
 void decidedAgainst(inout Best best, real value, real scale) {
 #ifdef EXACT
   real m = abs(value) / scale;
+  m = m >= real(0) ? m : real(0);
   best.margin = select(best.margin, m, less(m, best.margin));
 #endif
 }

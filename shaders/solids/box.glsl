@@ -57,7 +57,7 @@ void box_free(uint row, FreeRay ray, inout Best best) {
   real3 lo = minus3(low.xyz, ray.origin);
   real3 hi = minus3(worldRecord(row + 1u).xyz, ray.origin);
   real length = root(ray.squared);
-  real scale = ray.reach + length3(low.xyz) + length3(worldRecord(row + 1u).xyz);
+  real scale = originScale(ray, low.xyz, lo) + originScale(ray, worldRecord(row + 1u).xyz, hi);
   real enter = -BIG, leave = BIG;
   real towardsEnter = real(0), towardsLeave = real(0);
   bool miss = false;
@@ -107,7 +107,8 @@ void box_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {
 }
 
 // The face nearest to the hit point; at an edge the first axis. Its side follows from the ray: entered or left.
-void box_finish(uint row, real3 hit, real3 direction, real cosine, out real3 normal) {
+void box_finish(uint row, real3 hit, real3 direction, real cosine, inout real3 normal,
+                inout real3 local) {
   real3 lo = worldRecord(row).xyz, hi = worldRecord(row + 1u).xyz;
   real3 off = abs(minus3(hit, lo));
   real3 above = abs(minus3(hi, hit));

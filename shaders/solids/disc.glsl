@@ -36,7 +36,7 @@ void disc_free(uint row, FreeRay ray, inout Best best) {
   precise real3 q = ray.direction * distance - f * towards;
   real r = mul(n.w, towards);
   real inside = sub(mul(r, r), dot3(q, q));
-  real reach = length3(c.xyz) + ray.reach;
+  real reach = originScale(ray, c.xyz, f);
   bool hit = inside >= real(0) && distance != real(0) && towards != real(0);
   decidedAgainst(best, inside, ray.squared * (reach * reach + n.w * n.w));
   decidedAgainst(best, hit ? distance : reach, reach);
@@ -54,7 +54,8 @@ void disc_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {
   offerNaive(best, float(dot3(q, q)) <= n.w * n.w, t, -towards, c.w);
 }
 
-void disc_finish(uint row, real3 hit, real3 direction, real cosine, out real3 normal) {
+void disc_finish(uint row, real3 hit, real3 direction, real cosine, inout real3 normal,
+                 inout real3 local) {
   normal = worldRecord(row + 1u).xyz;
 }
 #endif

@@ -26,7 +26,7 @@ void plane_free(uint row, FreeRay ray, inout Best best) {
   real distance = dot3(n, f);
   real towards = dot3(n, ray.direction);
   real s = quotient(towards, distance);
-  decidedAgainst(best, distance, length3(p.xyz) + ray.reach);
+  decidedAgainst(best, distance, originScale(ray, p.xyz, f));
   decidedAgainst(best, towards, root(ray.squared));
   offer(best, distance != real(0), s, -towards, p.w);
 }
@@ -40,6 +40,7 @@ void plane_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {
   offerNaive(best, towards != 0.0, t, -towards, p.w);
 }
 
-void plane_finish(uint row, real3 hit, real3 direction, real cosine, out real3 normal) { normal = worldRecord(row + 1u).xyz; }
+void plane_finish(uint row, real3 hit, real3 direction, real cosine, inout real3 normal,
+                  inout real3 local) { normal = worldRecord(row + 1u).xyz; }
 #endif
 #endif

@@ -36,7 +36,7 @@ void quad_free(uint row, FreeRay ray, inout Best best) {
   real v = mul(sgn, dot3(ray.direction, q));
   real distance = mul(sgn, dot3(e2, q));
   real inside = smaller(smaller(u, v), sub(abs(det), larger(u, v)));
-  real reach = length3(v1.xyz) + ray.reach, length = root(ray.squared), l1 = length3(e1), l2 = length3(e2);
+  real reach = originScale(ray, v1.xyz, f), length = root(ray.squared), l1 = length3(e1), l2 = length3(e2);
   bool hit = inside >= real(0) && det != real(0);
   decidedAgainst(best, inside, length * (reach * (l1 + l2) + l1 * l2));
   decidedAgainst(best, det, length * l1 * l2);
@@ -60,8 +60,14 @@ void quad_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {
   offerNaive(best, det != 0.0 && u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0, t, -towards, v1.w);
 }
 
-void quad_finish(uint row, real3 hit, real3 direction, real cosine, out real3 normal) {
+void quad_finish(uint row, real3 hit, real3 direction, real cosine, inout real3 normal,
+                 inout real3 local) {
   normal = worldRecord(row + 3u).xyz;
+  real3 q = minus3(hit, worldRecord(row).xyz), e1 = worldRecord(row + 1u).xyz, e2 = worldRecord(row + 2u).xyz;
+  real area = dot3(cross3(e1, e2), normal);
+  real beta = quotient(dot3(cross3(q, e2), normal), area);
+  real gamma = quotient(dot3(cross3(e1, q), normal), area);
+  local = real3(beta, gamma, real(0));
 }
 #endif
 #endif

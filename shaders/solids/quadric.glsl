@@ -35,7 +35,7 @@ void quadric_eye(uint row, EyeRay ray, inout Best best) {
   real small = quotient(negate(A), select(add(B, B), sum, away));
   real s = select(select(quotient(sum, m.w), small, on), small, away);
   decided(best, q, more.y);
-  decided(best, mul(h, sum), more.z);
+  decided(best, select(number(1.0), mul(h, sum), atLeast(q, number(0.0))), more.z);
   decided(best, select(number(1.0), A, away || on), more.w);
   decided(best, B, record(row + 4u).x);
   // -n.d = sign s h / |G|; on the surface and entering, the ray leaves again, so the sign turns.
@@ -75,7 +75,7 @@ void quadric_free(uint row, FreeRay ray, inout Best best) {
   real s = away ? quotient(-A, sum) : quotient(sum, C);
   decidedAgainst(best, C, cScale);
   decidedAgainst(best, q, ray.squared * (wScale * wScale + cScale * size));
-  decidedAgainst(best, mul(h, sum), ray.squared * (wScale * wScale + cScale * size));
+  decidedAgainst(best, q < real(0) ? wScale * wScale + cScale * size : mul(h, sum), ray.squared * (wScale * wScale + cScale * size));
   decidedAgainst(best, away ? A : real(1), away ? ray.squared * size : real(1));
   precise real3 G = Md * sgn + w * (s * sgn);
   real cosine = quotient(sgn * s * h, length3(G));
@@ -103,7 +103,8 @@ void quadric_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {
   offerNaive(best, A == 0.0 || q >= 0.0, t, cosine, float(m.w));
 }
 
-void quadric_finish(uint row, real3 hit, real3 direction, real cosine, out real3 normal) {
+void quadric_finish(uint row, real3 hit, real3 direction, real cosine, inout real3 normal,
+                    inout real3 local) {
   precise real3 gradient = quadricTimes(worldRecord(row), worldRecord(row + 1u), hit) + worldRecord(row + 2u).xyz;
   normal = unit3(gradient);
   if (gradient == real3(0)) normal = unit3(-direction);  // a cone's apex: no gradient; it faces the ray

@@ -31,7 +31,7 @@ void sphere_free(uint row, FreeRay ray, inout Best best) {
   real4 c = worldRecord(row);
   real index = worldRecord(row + 1u).x;
   real3 f = minus3(ray.origin, c.xyz);
-  real scale = dot3(c.xyz, c.xyz) + ray.reach * ray.reach + c.w * c.w;
+  real size = originScale(ray, c.xyz, f), scale = size * size + c.w * c.w;
   real outside = sub(dot3(f, f), mul(c.w, c.w));
   real b = dot3(f, ray.direction);
   real q = sub(mul(b, b), mul(ray.squared, outside));
@@ -61,7 +61,8 @@ void sphere_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {
   offerNaive(best, q >= 0.0, outside ? near : far, cosine, index);
 }
 
-void sphere_finish(uint row, real3 hit, real3 direction, real cosine, out real3 normal) {
+void sphere_finish(uint row, real3 hit, real3 direction, real cosine, inout real3 normal,
+                   inout real3 local) {
   real4 c = worldRecord(row);
   normal = unit3(minus3(hit, c.xyz));
 }

@@ -1,0 +1,46 @@
+// Where rows of numbers come from. STORAGE 0: uniform buffers (llvmpipe loads them once for all lanes: 1.7 times
+// faster), STORAGE 1: storage buffers, for scenes beyond the uniform range. A row is four `real`; a double-float row is
+// two vec4, high parts first.
+#ifndef SOLIDCAST_RECORDS
+#define SOLIDCAST_RECORDS
+#include "numeric.glsl"
+
+#if ARITHMETIC == 1
+#define RAW dvec4
+#else
+#define RAW vec4
+#endif
+
+layout(constant_id = 20) const uint RECORD_RAWS = 1u;  // sizes of the uniform arrays
+layout(constant_id = 21) const uint WORLD_RAWS = 1u;
+layout(constant_id = 22) const uint VIEW_RAWS = 1u;
+
+#if STORAGE
+#define RECORDS(number, Name, name, size) layout(set = 0, binding = number, std430) readonly buffer Name { RAW name[]; }
+#else
+#define RECORDS(number, Name, name, size) layout(set = 0, binding = number, std140) uniform Name { RAW name[size]; }
+#endif
+
+real4 rowOf(RAW first, RAW second) {
+#if ARITHMETIC == 2
+  return real4(real(first.x, second.x), real(first.y, second.y), real(first.z, second.z), real(first.w, second.w));
+#else
+  return first;
+#endif
+}
+#if ARITHMETIC == 2
+#define ROW(raws, row) rowOf(raws[2u * (row)], raws[2u * (row) + 1u])
+#else
+#define ROW(raws, row) rowOf(raws[row], raws[row])
+#endif
+
+#if EYE
+RECORDS(0, Records, records, RECORD_RAWS);
+real4 record(uint row) { return ROW(records, row); }
+#endif
+#if WORLD
+RECORDS(1, WorldRecords, worldRecords, WORLD_RAWS);
+real4 worldRecord(uint row) { return ROW(worldRecords, row); }
+#endif
+
+#endif
