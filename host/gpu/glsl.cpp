@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <regex>
 #include <sstream>
+#include <utility>
 
 #include "host/error.h"
 #include "host/gpu/shaders.h"
@@ -25,30 +27,26 @@ std::string readFile(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Looks beside the including file, then in the folders; remembers every file that was read.
+/// Looks beside the including file, then in the folders; remembers every file that was read. glslang asks for the
+/// `local` place first (`#include "x"` alone), and for the `system` places where that gave nothing.
 class Includer : public glslang::TShader::Includer {
  public:
   Includer(const std::vector<fs::path>& folders, std::vector<fs::path>& files) : folders_(folders), files_(files) {}
 
   IncludeResult* includeLocal(const char* header, const char* includer, size_t depth) override {
-    constexpr size_t deepest = 64;
-    if (depth > deepest) return failed("nested deeper than 64 files; does a file include itself? ");
-    std::vector<fs::path> places{fs::path(includer).parent_path()};
-    places.insert(places.end(), folders_.begin(), folders_.end());
-    std::string looked;
-    for (const fs::path& place : places) {
-      const fs::path file = (place / header).lexically_normal();
-      if (fs::is_regular_file(file)) {
-        if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
-        auto* text = new std::string(readFile(file));
-        return new IncludeResult(file.string(), text->data(), text->size(), text);
-      }
-      looked += (looked.empty() ? "" : ", ") + (place.empty() ? "." : place.string());
-    }
-    return failed("no such file; looked in " + looked + " ");
+    looked_ = fs::path(includer).parent_path().string();
+    if (looked_.empty()) looked_ = ".";
+    return depth > deepest ? nullptr : found(fs::path(includer).parent_path() / header);
   }
 
-  IncludeResult* includeSystem(const char*, const char*, size_t) override { return nullptr; }
+  IncludeResult* includeSystem(const char* header, const char*, size_t depth) override {
+    if (depth > deepest) return failed("nested deeper than 64 files, perhaps a file includes itself;");
+    for (const fs::path& folder : folders_) {
+      if (IncludeResult* result = found(folder / header)) return result;
+      looked_ += (looked_.empty() ? "" : ", ") + folder.string();
+    }
+    return failed("no such file in " + std::exchange(looked_, "") + ";");
+  }
 
   void releaseInclude(IncludeResult* result) override {
     if (!result) return;
@@ -57,26 +55,40 @@ class Includer : public glslang::TShader::Includer {
   }
 
  private:
-  /// An empty name tells glslang that the text is an error message.
-  static IncludeResult* failed(const std::string& message) {
-    auto* text = new std::string(message);
-    return new IncludeResult("", text->data(), text->size(), text);
+  static constexpr size_t deepest = 64;
+
+  IncludeResult* found(const fs::path& place) {
+    const fs::path file = place.lexically_normal();
+    if (!fs::is_regular_file(file)) return nullptr;
+    if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
+    return made(file.string(), readFile(file));
+  }
+  /// glslang takes a result without a name for an error message; it adds "for header name: x".
+  static IncludeResult* failed(const std::string& message) { return made("", message); }
+
+  static IncludeResult* made(const std::string& name, std::string content) {
+    auto text = std::make_unique<std::string>(std::move(content));
+    auto* result = new IncludeResult(name, text->data(), text->size(), text.get());
+    text.release();  // releaseInclude() has it from here
+    return result;
   }
 
   const std::vector<fs::path>& folders_;
   std::vector<fs::path>& files_;
+  std::string looked_;  // for the message
 };
 
-/// glslang's `ERROR: path:line: 'token' : message` becomes `path:line: error: 'token': message`. Warnings and the
-/// closing count of errors are dropped; what has no place gets the file's name.
+/// glslang's `ERROR: path:line: 'token' : message` becomes `path:line: error: 'token': message`. Warnings and
+/// glslang's closing remarks are dropped; what has no place gets the file's name.
 std::string reshaped(const std::string& log, const std::string& name) {
   static const std::regex placed(R"(^ERROR: (.*?):(\d+): (?:'(.*?)' : +)?(.*)$)");
-  static const std::regex count(R"(^ERROR: \d+ compilation errors\..*$)");
+  static const std::regex remark(R"(^ERROR: (\d+ compilation errors\.|.*: compilation terminated).*$)");
   std::istringstream lines(log);
   std::string line, out;
   std::smatch part;
   while (std::getline(lines, line)) {
-    if (std::regex_match(line, count) || !line.starts_with("ERROR: ")) continue;
+    line.erase(line.find_last_not_of(' ') + 1);
+    if (std::regex_match(line, remark) || !line.starts_with("ERROR: ")) continue;
     if (!out.empty()) out += '\n';
     if (std::regex_match(line, part, placed)) {
       out += part[1].str() + ":" + part[2].str() + ": error: ";
@@ -112,7 +124,7 @@ CompiledModule compileText(const std::string& text, const std::string& name, con
   shader.setEnvInput(glslang::EShSourceGlsl, EShLangCompute, glslang::EShClientVulkan, 100);
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
-  constexpr auto rules = EShMessages(EShMsgSpvRules | EShMsgVulkanRules);
+  constexpr auto rules = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors);
   constexpr int versionIfNoneGiven = 460;
   if (!shader.parse(GetDefaultResources(), versionIfNoneGiven, false, rules, includer)) {
     throw Error(Exit::shader, reshaped(shader.getInfoLog(), name));
