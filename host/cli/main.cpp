@@ -72,9 +72,10 @@ std::string describe(const CLI::ParseError& error, const CLI::App& app) {
   std::string line = error.what();
   const auto verbs = app.get_subcommands();
   const CLI::App& verb = verbs.empty() ? app : *verbs.back();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    const std::vector<std::string> extras = app.remaining(true);
-    const std::string word = extras.empty() ? "" : extras.front().substr(0, extras.front().find('='));
+  // A mistyped option also leaves the right one missing: the word that nobody knows tells more.
+  const std::vector<std::string> extras = app.remaining(true);
+  if (!extras.empty()) {
+    const std::string word = extras.front().substr(0, extras.front().find('='));
     std::vector<std::string> known;
     for (const CLI::Option* option : verb.get_options())
       for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
@@ -86,7 +87,7 @@ std::string describe(const CLI::ParseError& error, const CLI::App& app) {
 int fail(Exit code, std::string line) {
   // A compiler's further errors keep lines of their own; everything else is one line.
   if (code != Exit::shader) std::replace(line.begin(), line.end(), '\n', ' ');
-  note("error: " + line);
+  note((code == Exit::differs ? "" : "error: ") + line);
   return static_cast<int>(code);
 }
 

@@ -55,17 +55,15 @@ bool toStandardOutput(std::string_view text) {
   return true;
 }
 
-/// The whole stream; `cast` is the GPU's or the reference's.
-void stream(const Query& query, const World& world, RayReader& reader, OutputFile* file, const Cast& cast) {
-  std::vector<QueryRay> rays(kBlock);
-  std::vector<QueryHit> hits(kBlock);
+/// The whole stream; `rays` holds the first `count` of it. `cast` is the GPU's or the reference's.
+void stream(const Query& query, const World& world, RayReader& reader, std::vector<QueryRay>& rays, std::size_t count,
+            OutputFile* file, const Cast& cast) {
+  std::vector<QueryHit> hits(rays.size());
   const HitFormatter formatter(world, query.hex);
   std::string text;
   Progress progress;
   const bool quiet = file == nullptr && isatty(STDOUT_FILENO) == 1;  // a bar among the lines helps nobody
-  for (std::uint64_t first = 0;;) {
-    const std::size_t count = reader.read(rays);
-    if (count == 0) break;
+  for (std::uint64_t first = 0; count > 0; count = reader.read(rays)) {
     cast({rays.data(), count}, {hits.data(), count});
     text.clear();
     for (std::size_t i = 0; i < count; ++i) formatter.append(text, first + i, hits[i]);
@@ -86,17 +84,20 @@ void run(const CLI::App& verb, const Query& query) {
   std::optional<OutputFile> opened;
   if (query.output != "-") opened.emplace(query.output, false);
   OutputFile* file = opened ? &*opened : nullptr;
+  // The first block before the device, so that a bad ray is told at once.
+  std::vector<QueryRay> rays(kBlock);
+  const std::size_t count = reader.read(rays);
+  const auto streamWith = [&](const Cast& cast) { stream(query, scene.world, reader, rays, count, file, cast); };
   if (query.backend == Backend::cpu) {
     note(cpuName(query.casting.precision));
-    stream(query, scene.world, reader, file, [&](std::span<const QueryRay> rays, std::span<QueryHit> hits) {
-      reference::cast(scene.world, rays, hits, query.casting.precision);
+    streamWith([&](std::span<const QueryRay> some, std::span<QueryHit> hits) {
+      reference::cast(scene.world, some, hits, query.casting.precision);
     });
     return;
   }
   const std::unique_ptr<gpu::Device> device = openDevice(query.casting);
   QueryCaster caster(*device, scene.world, query.casting.cast);
-  stream(query, scene.world, reader, file,
-         [&](std::span<const QueryRay> rays, std::span<QueryHit> hits) { caster.cast(rays, hits); });
+  streamWith([&](std::span<const QueryRay> some, std::span<QueryHit> hits) { caster.cast(some, hits); });
 }
 
 }  // namespace

@@ -135,17 +135,13 @@ bool RayReader::nextLine(std::string_view& line) {
 }
 
 std::size_t RayReader::read(std::span<QueryRay> rays) {
-  if (!error_.empty()) throw Error(Exit::usage, error_);
   std::size_t count = 0;
   std::string_view line;
   while (count < rays.size() && nextLine(line)) {
     line = line.substr(0, line.find('#'));
     if (std::all_of(line.begin(), line.end(), isBlank)) continue;
-    if (const auto wrong = parseRay(line, tMax_, rays[count])) {
-      error_ = name_ + ":" + std::to_string(lineNumber_) + ": " + *wrong;
-      if (count == 0) throw Error(Exit::usage, error_);
-      break;
-    }
+    if (const auto wrong = parseRay(line, tMax_, rays[count]))
+      throw Error(Exit::usage, name_ + ":" + std::to_string(lineNumber_) + ": " + *wrong);
     ++count;
   }
   return count;

@@ -28,8 +28,7 @@ class RayReader {
   RayReader& operator=(const RayReader&) = delete;
 
   /// Fills `rays` from the front and returns how many there were; less than asked for only at the end of the file.
-  /// A line that is no ray throws Error(Exit::usage) `file:line: what, expected what`, after the rays before it were
-  /// returned.
+  /// A line that is no ray throws Error(Exit::usage) `file:line: what, expected what`.
   std::size_t read(std::span<QueryRay> rays);
 
   /// Share of the file that has been read, 0 to 1; 0 where the length is unknown (a pipe).
@@ -46,7 +45,6 @@ class RayReader {
   std::size_t begin_ = 0, end_ = 0;  // of the text in buffer_ that is not used up
   bool atEnd_ = false;
   std::uint64_t lineNumber_ = 0, bytesRead_ = 0, fileSize_ = 0;
-  std::string error_;  // of a line that read() met after it had filled some rays
 };
 
 /// Appends one JSON line a hit: {"ray":i,"hit":true,"t":..,"solid":"name","index":k,"normal":[..],"local":[..],
