@@ -82,10 +82,12 @@ std::string censusText(const Census& census) {
   text +=
       row("error", "max " + withUnit(census.maxError, unit) + ", mean " + brief(census.meanError) + ", PSNR " +
                        brief(census.psnr) + " dB" + (unit == Unit::values ? " (peak " + brief(census.peak) + ")" : ""));
-  const std::string differing = "--max-differing " + std::to_string(census.beyond);
-  text += row("would pass", std::isinf(census.passingLevel)
-                                ? differing + ", no --max-level"
-                                : "--max-level " + shortest(census.passingLevel) + ", or " + differing);
+  const std::string byCount =
+      "--max-differing " + std::to_string(census.beyond) + " --max-level " + shortest(census.budget.level);
+  const std::string byLevel =
+      "--max-differing " + std::to_string(census.budget.differing) + " --max-level " + shortest(census.passingLevel);
+  const bool both = std::isfinite(census.passingLevel) && byCount != byLevel;
+  if (!census.pass()) text += row("would pass", both ? byCount + ", or " + byLevel : byCount);
   text += row("budget",
               pixels(census.budget.differing) + " beyond " + level + ": " + (census.pass() ? "kept" : "exceeded"));
   text.pop_back();

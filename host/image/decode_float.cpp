@@ -65,11 +65,14 @@ class HdrRows {
  public:
   HdrRows(Content content, const std::string& name) : content_(content), name_(name) {}
 
+  /// `pixels` grows with what is read, so that a small file with a large header asks for little memory.
   void row(std::vector<std::uint8_t>& pixels, std::size_t width) {
+    pixels.clear();
     const Content head = content_.subspan(0, std::min<std::size_t>(4, content_.size()));
     if (head.size() == 4 && head[0] == 2 && head[1] == 2 && head[2] < 128 && width >= 8 && width <= 32767) {
       if (static_cast<std::size_t>(head[2] << 8 | head[3]) != width) damaged();
       content_ = content_.subspan(4);
+      pixels.resize(4 * width);
       for (std::size_t part = 0; part < 4; ++part) component(pixels, width, part);
     } else {
       plain(pixels, width);
@@ -105,12 +108,14 @@ class HdrRows {
       Rgbe pixel;
       for (std::uint8_t& part : pixel) part = next();
       if (pixel[0] != 1 || pixel[1] != 1 || pixel[2] != 1) {
-        std::memcpy(&pixels[4 * x++], pixel, 4);
+        pixels.insert(pixels.end(), pixel, pixel + 4);
+        ++x;
         shift = 0;
         continue;
       }
       const std::size_t count = static_cast<std::size_t>(pixel[3]) << shift;
       if (x == 0 || count > width - x || shift > 16) damaged();
+      pixels.resize(4 * (x + count));
       for (std::size_t i = 0; i < count; ++i, ++x) std::memcpy(&pixels[4 * x], &pixels[4 * x - 4], 4);
       shift += 8;
     }
@@ -163,11 +168,9 @@ Image decodeHdr(Content content, const std::string& name) {
   const auto width = number<std::int64_t>(size.word(), "width", name);
   if (down != "-Y" || right != "+X") badImage(name, "unknown order of pixels, expected -Y HEIGHT +X WIDTH");
   checkImageSize(width, height, name);
-  // Run lengths hold at most 127 pixels in two bytes, old ones 65,535 times more in a few: so the memory that a
-  // small file can ask for is bounded by checkImageSize() only.
   HdrRows rows(size.rest(), name);
   const std::size_t columns = static_cast<std::size_t>(width);
-  std::vector<std::uint8_t> pixels(4 * columns);
+  std::vector<std::uint8_t> pixels;
   std::vector<float> values;
   for (std::int64_t y = 0; y < height; ++y) {
     rows.row(pixels, columns);

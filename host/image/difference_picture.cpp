@@ -40,7 +40,7 @@ class Heat {
   /// Blue, violet, orange, yellow.
   static Colour at(double place) {
     constexpr std::array<std::array<double, 3>, 4> kStops{
-        {{40, 60, 200}, {170, 40, 170}, {240, 110, 40}, {255, 245, 120}}};
+        {{70, 110, 255}, {170, 40, 170}, {240, 110, 40}, {255, 245, 120}}};
     const double along = std::clamp(place, 0.0, 1.0) * (kStops.size() - 1);
     const std::size_t from = std::min<std::size_t>(static_cast<std::size_t>(along), kStops.size() - 2);
     const double part = along - static_cast<double>(from);
@@ -173,7 +173,7 @@ std::vector<std::string> facts(const Census& census) {
   std::vector<std::string> lines{
       std::to_string(census.beyond) + " of " + std::to_string(census.pixels) + " pixels differ by more than " +
           withUnit(census.budget.level, census.unit),
-      std::to_string(census.within) + " differ by less",
+      std::to_string(census.within) + " differ within the tolerance",
       "max " + withUnit(census.maxError, census.unit) +
           (census.worst.x < 0 ? "" : " at " + std::to_string(census.worst.x) + "," + std::to_string(census.worst.y))};
   if (census.hasHits)

@@ -161,7 +161,7 @@ TEST(BadImages, APngThatClaimsToBeHugeIsRefusedBeforeMemoryIsAskedFor) {
 void expectToSurviveDamage(const Bytes& good, unsigned seed) {
   std::mt19937 random(seed);
   int refused = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 1500; ++i) {
     Bytes bad = good;
     const std::size_t changes = 1 + random() % 4;
     for (std::size_t k = 0; k < changes && !bad.empty(); ++k) {
@@ -190,7 +190,7 @@ void expectToSurviveDamage(const Bytes& good, unsigned seed) {
       ASSERT_FALSE(contains(error.what(), "\n")) << error.what();
     }
   }
-  EXPECT_GT(refused, 300);
+  EXPECT_GT(refused, 150);
 }
 
 TEST(BadImages, RandomDamageNeverCrashes) {
