@@ -40,11 +40,12 @@ View narrow(const Subject& subject, Random& random) {
   return view;
 }
 
-// All but the middle pixels look along the horizon, so the eye is close above the ground.
+// All but the middle pixels look along the horizon, so the eye is close above the ground or below it.
 View wide(const Subject& subject, Random& random) {
   Triple point, normal;
   if (!pointOn(subject.shape, random, subject.center, subject.size, point, normal)) return generic(subject, random);
-  return {sum(point, scaled(subject.size * random.decade(-7, -5), normal)), point, 179.9999};
+  const double height = random.sign() * subject.size * random.decade(-7, -5);
+  return {sum(point, scaled(height, normal)), point, 179.9999};
 }
 
 View near(const Subject& subject, Random& random) {

@@ -76,7 +76,10 @@ struct Exact {
 
   static Exact of(Real x) { return {Dyadic(x), magnitude(x)}; }
   static Exact of(double x) { return {Dyadic(x), magnitude(static_cast<Real>(x))}; }
-  static Exact difference(const Exact& x, const Exact& y, bool) { return x - y; }
+  static Exact difference(const Exact& x, const Exact& y, bool) {
+    const Exact result = x - y;
+    return result.value.sign() == 0 ? Exact{} : result;
+  }
 
   friend Exact operator+(const Exact& a, const Exact& b) { return {a.value + b.value, a.terms + b.terms}; }
   friend Exact operator-(const Exact& a, const Exact& b) { return {a.value - b.value, a.terms + b.terms}; }
