@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -76,12 +77,12 @@ std::optional<std::string> parseNumber(std::string_view word, float& value) {
                                             hex ? std::chars_format::hex : std::chars_format::general);
   if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
     return shown(word) + " is no number, expected a decimal or a hex float like 0x1.8p+3";
-  // from_chars reports too large and too small alike; strtof tells infinity from (denormal) zero.
-  if (error == std::errc::result_out_of_range)
+  // from_chars reports too large and too small alike, and GCC 12's rounds some hex denormals wrongly; strtof does
+  // neither, but is slow.
+  if (error == std::errc::result_out_of_range || (hex && value < std::numeric_limits<float>::min()))
     value = std::strtof(((hex ? "0x" : "") + std::string(digits)).c_str(), nullptr);
-  const bool word_of_letters = !hex && !digits.empty() && std::strchr("iInN", digits[0]) != nullptr;
-  if (std::isinf(value) && !word_of_letters)
-    return shown(word) + " is beyond fp32, expected at most 3.40282347e+38 in size";
+  const bool letters = !hex && !digits.empty() && std::strchr("iInN", digits[0]) != nullptr;
+  if (std::isinf(value) && !letters) return shown(word) + " is beyond fp32, expected at most 3.40282347e+38 in size";
   if (negative) value = -value;
   return std::nullopt;
 }
