@@ -1,0 +1,162 @@
+// QueryCaster: free rays, a block at a time.
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "host/cast/program.h"
+#include "host/cast/second_pass.h"
+#include "host/error.h"
+
+namespace solidcast {
+namespace {
+
+// rays.comp: Portion, QueryRay, QueryHit
+struct RayPush {
+  std::uint32_t rays, stage;
+  SearchPortion search;
+};
+struct RayRow {
+  float origin[3], tMax, direction[3], unused;
+};
+struct HitRow {
+  std::int32_t index;
+  float t, normal[3], local[3], position[3];
+};
+static_assert(sizeof(RayRow) == 32 && sizeof(HitRow) == 44);
+
+constexpr std::size_t blockRays = 65536;
+
+V3 vectorOf(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+struct QueryCaster::Impl {
+  gpu::Device& device;
+  const World& world;
+  Program program;
+  std::vector<SearchPortion> search;
+  std::optional<gpu::Pipeline> pipeline;
+  std::vector<gpu::Buffer> buffers;
+  std::optional<SecondPass> second;
+  CastStats stats;
+
+  Impl(gpu::Device& d, const World& w, const CastOptions& options) : device(d), world(w) {
+    auto start = std::chrono::steady_clock::now();
+    auto lap = [&] {
+      auto now = std::chrono::steady_clock::now();
+      double ms = std::chrono::duration<double, std::milli>(now - start).count();
+      start = now;
+      return ms;
+    };
+    std::string why;
+    program.job = Job::rays;
+    program.method = options.method;
+    program.real = chooseReal(device.info(), options, Job::rays, 0, why);
+    Records records = worldRecords(world, {}, program.real);
+    program.storage = records.bytes.size() > device.info().limits.maxUniformBufferRange || records.solids() > 4096;
+    program.hits = options.method != Method::exact;
+    search = program.storage ? portions(records) : std::vector<SearchPortion>(1);
+    stats.flatten_ms = lap();
+    gpu::Specialisation constants = recordConstants(program, records, records);
+    // s to 2^-25 in fp64; in fp32 decisions that 2^-24 can tell, since t comes from the second pass.
+    constants[doubt] = bits(std::ldexp(1.f, program.real == RealType::f64 ? -24 : -9));
+    std::vector<std::uint32_t> spirv = programSpirv(program, options);
+    pipeline.emplace(device.makePipeline(spirv, constants));
+    auto use = program.storage ? gpu::BufferUse::storage : gpu::BufferUse::uniform;
+    buffers.resize(8);
+    buffers[1] = filledBuffer(device, records.bytes, use);
+    buffers[2] = device.makeBuffer(blockRays * sizeof(RayRow), gpu::BufferUse::storage);
+    buffers[3] = device.makeBuffer(blockRays * sizeof(HitRow), gpu::BufferUse::readback);
+    if (program.storage)
+      buffers[6] = device.makeBuffer(search.size() > 1 ? blockRays * 48 : 64, gpu::BufferUse::storage);
+    if (program.hits)
+      buffers[7] = filledBuffer(device, std::as_bytes(std::span(records.places)), gpu::BufferUse::storage);
+    stats.shader_ms = lap();
+    stats.module = program.moduleName();
+    stats.spirvBytes = spirv.size() * 4;
+    stats.plan.push_back(why);
+    stats.leftOut = leftOutLines(program, world, {});
+    stats.deviceBytes = device.peakBytes();
+    if (options.method == Method::exact) second.emplace(world);
+  }
+
+  void block(std::span<const QueryRay> rays, std::span<QueryHit> hits) {
+    auto rows = buffers[2].as<RayRow>();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const QueryRay& r = rays[i];
+      rows[i] = {{r.origin[0], r.origin[1], r.origin[2]}, r.tMax, {r.direction[0], r.direction[1], r.direction[2]}, 0};
+    }
+    std::vector<const gpu::Buffer*> bound;
+    for (const gpu::Buffer& b : buffers) bound.push_back(b.bytes().empty() ? nullptr : &b);
+    auto n = static_cast<std::uint32_t>(rays.size());
+    std::vector<RayPush> pushes;
+    for (std::size_t p = 0; p < search.size(); ++p)
+      pushes.push_back({n, (p == 0 ? 1u : 0u) | (p + 1 == search.size() ? 2u : 0u), search[p]});
+    std::vector<gpu::Dispatch> dispatches;
+    for (const RayPush& push : pushes)
+      dispatches.push_back({&*pipeline, bound, std::as_bytes(std::span(&push, 1)), {(n + 63) / 64, 1, 1}});
+    auto start = std::chrono::steady_clock::now();
+    double ms = device.run(dispatches);
+    if (stats.rays == 0)
+      stats.first_dispatch_ms =
+          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    stats.dispatch_ms += ms;
+    stats.rays += n;
+    start = std::chrono::steady_clock::now();
+    auto found = buffers[3].as<HitRow>();
+    if (second) {
+      for (std::size_t i = 0; i < rays.size(); ++i) stats.fallbackRays += found[i].index == -2;
+      inParallel(rays.size(), [&](std::size_t i) { hits[i] = exactHit(rays[i], found[i].index); });
+    } else {
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const HitRow& h = found[i];
+        hits[i] = {};
+        if (h.index < 0) continue;
+        hits[i].index = h.index;
+        hits[i].t = h.t;
+        std::memcpy(hits[i].normal.data(), h.normal, sizeof h.normal);
+        std::memcpy(hits[i].local.data(), h.local, sizeof h.local);
+        std::memcpy(hits[i].position.data(), h.position, sizeof h.position);
+      }
+    }
+    stats.fallback_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  QueryHit exactHit(const QueryRay& given, std::int32_t index) const {
+    if (index == -1) return {};
+    RayQ ray{vectorOf(given.origin), vectorOf(given.direction)};
+    ExactHit hit;
+    if (index >= 0) hit = second->castAt(ray, index);
+    if (!hit) hit = std::isinf(given.tMax) ? second->cast(ray) : second->cast(ray, f128(given.tMax));
+    if (!hit) return {};
+    Surface s = second->surface(ray, hit);
+    V3 p = ray.origin + hit.t * ray.direction;
+    QueryHit out;
+    out.index = hit.index;
+    out.t = static_cast<float>(hit.t);
+    for (int k = 0; k < 3; ++k) {
+      auto at = static_cast<std::size_t>(k);
+      out.normal[at] = static_cast<float>(s.normal[k]);
+      out.local[at] = static_cast<float>(s.local[k]);
+      out.position[at] = static_cast<float>(p[k]);
+    }
+    return out;
+  }
+};
+
+QueryCaster::QueryCaster(gpu::Device& device, const World& world, const CastOptions& options)
+    : impl_(std::make_unique<Impl>(device, world, options)) {}
+QueryCaster::~QueryCaster() = default;
+
+void QueryCaster::cast(std::span<const QueryRay> rays, std::span<QueryHit> hits) {
+  for (std::size_t first = 0; first < rays.size(); first += blockRays) {
+    std::size_t n = std::min(blockRays, rays.size() - first);
+    impl_->block(rays.subspan(first, n), hits.subspan(first, n));
+  }
+}
+
+const CastStats& QueryCaster::stats() const { return impl_->stats; }
+
+}  // namespace solidcast

@@ -1,0 +1,380 @@
+// renderGpu(): a picture in bands. Each band is dispatched (once for every sample and portion of the solids), its
+// doubtful pixels get their second pass, and it goes to the sink.
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <mutex>
+
+#include "host/cast/program.h"
+#include "host/cast/second_pass.h"
+#include "host/error.h"
+
+namespace solidcast {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// pixels.comp: Portion
+struct PixelPush {
+  std::uint32_t wholeWidth, wholeHeight, firstX, firstY, width, rows, stride, stage, sampleX, sampleY;
+  SearchPortion search;
+};
+static_assert(sizeof(PixelPush) <= 128);
+
+enum Wanted : std::uint32_t { RGB8 = 1, RADIANCE = 2, DISTANCE = 4, SOLID = 8, NORMAL = 16, LOCAL = 32, POSITION = 64 };
+
+/// Words a pixel takes in the image buffer; the planes lie one after the other in the order of the bits.
+std::uint32_t wordsOf(std::uint32_t wanted) {
+  std::uint32_t words = 0;
+  for (std::uint32_t bit = 1; bit <= POSITION; bit *= 2)
+    if (wanted & bit) words += bit == RGB8 || bit == DISTANCE || bit == SOLID ? 1 : 3;
+  return words;
+}
+
+std::uint8_t level(float v) { return static_cast<std::uint8_t>((v < 0 ? 0.f : v > 1 ? 1.f : v) * 255.f); }
+
+/// One pass over the image: what the shader stores for one specialisation.
+class Pass {
+ public:
+  Pass(gpu::Device& device, const Scene& scene, const RenderJob& job, const CastOptions& options, bool radiance,
+       bool others, CastStats& stats)
+      : device_(device), scene_(scene), job_(job), stats_(stats) {
+    const Channels& c = job.channels;
+    program_.job = Job::pixels;
+    program_.method = options.method;
+    program_.camera = cameraNumber(scene.camera);
+    std::string why;
+    program_.real = chooseReal(device.info(), options, Job::pixels, program_.camera, why);
+    exact_ = options.method == Method::exact;
+    surfaces_ = others && exact_ && (c.normal || c.local || c.position);
+    program_.hits = others && !exact_ && (c.normal || c.local || c.position);
+    samples_ = radiance ? job.samples : 1;
+    wanted_ = 0;
+    if (radiance && (c.rgb8 || c.radiance)) wanted_ |= c.rgb8 && !c.radiance && samples_ == 1 ? RGB8 : RADIANCE;
+    if (others && (c.distance || surfaces_)) wanted_ |= DISTANCE;
+    if (others && (c.solid || surfaces_)) wanted_ |= SOLID;
+    if (program_.hits) wanted_ |= NORMAL * c.normal | LOCAL * c.local | POSITION * c.position;
+    radiance_ = radiance, others_ = others;
+
+    auto start = Clock::now();
+    EyeFrame eye = eyeFrame(scene, program_.eye() ? program_.real : RealType::f64);
+    Records forms;
+    V3 origin = options.method == Method::naive ? V3{} : eye.origin;
+    Records world;
+    if (!program_.eye() || program_.hits) world = worldRecords(scene.world, origin, program_.real);
+    if (program_.eye()) forms = eyeRecords(scene.world, eye, program_.real);
+    const Records& search = program_.eye() ? forms : world;
+    const auto& limits = device.info().limits;
+    program_.storage =
+        std::max(forms.bytes.size(), world.bytes.size()) > limits.maxUniformBufferRange || search.solids() > 4096;
+    View view = viewRows(scene, eye, job.width, job.height, samples_, program_.real);
+    portions_ = program_.storage ? portions(search) : std::vector<SearchPortion>(1);
+    stats.flatten_ms += since(start);
+
+    start = Clock::now();
+    gpu::Specialisation constants = recordConstants(program_, search, world);
+    constants[viewRaws] = static_cast<std::uint32_t>(view.raws);
+    constants[integratorNumber] = static_cast<std::uint32_t>(scene.integrator.index());
+    constants[twoSided] = job.twoSided;
+    constants[samples] = static_cast<std::uint32_t>(samples_);
+    constants[wanted] = wanted_;
+    // 32 u for prepared forms; for forms made on the way, what s needs to 2^-27 (fp64) or decisions alone (fp32).
+    bool coarse = exact_ && program_.real == RealType::f32;
+    float bound =
+        program_.eye() ? static_cast<float>(32 * unitRoundoff(program_.real)) : std::ldexp(1.f, coarse ? -9 : -24);
+    constants[doubt] = bits(bound);
+    constants[hitsInDoubt] = coarse;
+    std::vector<std::uint32_t> spirv = programSpirv(program_, options);
+    pipeline_.emplace(device.makePipeline(spirv, constants));
+    auto use = program_.storage ? gpu::BufferUse::storage : gpu::BufferUse::uniform;
+    buffers_.resize(8);
+    if (program_.eye()) buffers_[0] = filledBuffer(device, forms.bytes, use);
+    if (!world.bytes.empty() || !program_.eye() || program_.hits) buffers_[1] = filledBuffer(device, world.bytes, use);
+    buffers_[2] = filledBuffer(device, view.rows, gpu::BufferUse::uniform);
+    if (program_.camera == 1) buffers_[5] = filledBuffer(device, view.angles, gpu::BufferUse::storage);
+    if (program_.hits)
+      buffers_[7] = filledBuffer(device, std::as_bytes(std::span(world.places)), gpu::BufferUse::storage);
+    stats.shader_ms += since(start);
+    stats.module += (stats.module.empty() ? "" : ", ") + program_.moduleName();
+    stats.spirvBytes += spirv.size() * 4;
+    stats.plan.push_back(why);
+    stats.plan.push_back(program_.storage
+                             ? "records in storage buffers: " + std::to_string(search.bytes.size()) + " bytes, " +
+                                   std::to_string(portions_.size()) + " portion(s)"
+                             : "records in a uniform buffer: " + std::to_string(search.bytes.size()) + " bytes");
+    if (surfaces_) stats.plan.push_back("normals, local coordinates, points: in binary128 on the host, as exact asks");
+  }
+
+  /// Bytes of device memory a row of the crop takes, beside the records.
+  std::size_t bytesPerRow(int width) const {
+    std::size_t state = portions_.size() > 1 ? 48 : 0;
+    return (static_cast<std::size_t>(width) + 3) / 4 * 4 * (wordsOf(wanted_) * 4 + state) + width / 2;
+  }
+  const Program& program() const { return program_; }
+  bool needed() const { return wanted_ != 0; }
+
+  void makeBuffers(int width, int rows) {
+    stride_ = (width + 3) / 4 * 4;
+    std::size_t pixels = static_cast<std::size_t>(stride_) * rows;
+    buffers_[3] =
+        device_.makeBuffer(std::max<std::size_t>(16, pixels * wordsOf(wanted_) * 4), gpu::BufferUse::readback);
+    if (exact_) makeDoubts(pixels / 16 + 4096);
+    if (program_.storage)
+      buffers_[6] = device_.makeBuffer(portions_.size() > 1 ? pixels * 48 : 64, gpu::BufferUse::storage);
+  }
+
+  /// Fills the band's channels; the band's geometry is set already.
+  void run(Band& band, const Crop& crop) {
+    dispatch(band, crop);
+    if (exact_ && buffers_[4].as<std::uint32_t>()[0] > capacity_) {  // more doubt than room: once more, with room
+      makeDoubts(buffers_[4].as<std::uint32_t>()[0]);
+      dispatch(band, crop);
+    }
+    auto start = Clock::now();
+    read(band);
+    stats_.readback_ms += since(start);
+    start = Clock::now();
+    if (exact_) secondPass(band, crop);
+    if (samples_ > 1) {
+      float n = static_cast<float>(samples_ * samples_);
+      for (float& v : band.radiance) v /= n;
+    }
+    if (radiance_ && job_.channels.rgb8 && !(wanted_ & RGB8)) {
+      band.rgb8.resize(band.radiance.size());
+      std::transform(band.radiance.begin(), band.radiance.end(), band.rgb8.begin(), level);
+    }
+    if (radiance_ && !job_.channels.radiance) band.radiance.clear();
+    if (others_ && !job_.channels.distance) band.distance.clear();
+    if (others_ && !job_.channels.solid) band.solid.clear();
+    stats_.fallback_ms += since(start);
+  }
+
+ private:
+  void makeDoubts(std::size_t capacity) {
+    capacity_ = static_cast<std::uint32_t>(capacity);
+    buffers_[4] = device_.makeBuffer(8 + capacity * 4, gpu::BufferUse::readback);
+    buffers_[4].as<std::uint32_t>()[1] = capacity_;
+  }
+
+  void dispatch(const Band& band, const Crop& crop) {
+    if (doubtful_.size() < static_cast<std::size_t>(samples_) * samples_) doubtful_.resize(samples_ * samples_);
+    std::vector<const gpu::Buffer*> bound;
+    for (const gpu::Buffer& b : buffers_) bound.push_back(b.bytes().empty() ? nullptr : &b);
+    for (int sample = 0; sample < samples_ * samples_; ++sample) {
+      if (exact_) buffers_[4].as<std::uint32_t>()[0] = 0;
+      std::vector<PixelPush> pushes;
+      for (std::size_t p = 0; p < portions_.size(); ++p) {
+        std::uint32_t stage = (p == 0 ? 1u : 0u) | (p + 1 == portions_.size() ? 2u : 0u);
+        pushes.push_back({u(job_.width), u(job_.height), u(crop.x), u(crop.y + band.firstRow), u(band.width),
+                          u(band.rows), u(stride_), stage, u(sample % samples_), u(sample / samples_), portions_[p]});
+      }
+      std::vector<gpu::Dispatch> dispatches;
+      for (const PixelPush& push : pushes)
+        dispatches.push_back({&*pipeline_,
+                              bound,
+                              std::as_bytes(std::span(&push, 1)),
+                              {(u(stride_) / 4 + 15) / 16, (u(band.rows) + 3) / 4, 1}});
+      auto start = Clock::now();
+      double ms = device_.run(dispatches);
+      if (!warm_) stats_.first_dispatch_ms += since(start);
+      warm_ = true;
+      stats_.dispatch_ms += ms;
+      stats_.rays += static_cast<std::uint64_t>(band.width) * band.rows;
+      if (!exact_) continue;
+      auto doubts = buffers_[4].as<std::uint32_t>();
+      if (doubts[0] > capacity_) return;
+      auto& list = doubtful_[static_cast<std::size_t>(sample)];
+      list.assign(doubts.begin() + 2, doubts.begin() + 2 + doubts[0]);
+      std::sort(list.begin(), list.end());
+    }
+  }
+  static std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
+
+  template <class T>
+  void readPlanes(const std::uint32_t*& plane, int count, const Band& band, std::vector<T>& to) {
+    to.resize(static_cast<std::size_t>(band.width) * band.rows * count);
+    for (int c = 0; c < count; ++c, plane += static_cast<std::size_t>(stride_) * band.rows)
+      for (int y = 0; y < band.rows; ++y) {
+        const std::uint32_t* row = plane + static_cast<std::size_t>(y) * stride_;
+        T* out = to.data() + (static_cast<std::size_t>(y) * band.width) * count + c;
+        for (int x = 0; x < band.width; ++x) out[static_cast<std::size_t>(x) * count] = std::bit_cast<T>(row[x]);
+      }
+  }
+
+  void read(Band& band) {
+    const std::uint32_t* plane = buffers_[3].as<std::uint32_t>().data();
+    if (wanted_ & RGB8) {
+      band.rgb8.resize(static_cast<std::size_t>(band.width) * band.rows * 3);
+      std::uint8_t* out = band.rgb8.data();
+      for (int y = 0; y < band.rows; ++y) {
+        const std::uint32_t* row = plane + static_cast<std::size_t>(y) * stride_;
+        for (int x = 0; x < band.width; ++x, out += 3) {
+          out[0] = static_cast<std::uint8_t>(row[x]);
+          out[1] = static_cast<std::uint8_t>(row[x] >> 8);
+          out[2] = static_cast<std::uint8_t>(row[x] >> 16);
+        }
+      }
+      plane += static_cast<std::size_t>(stride_) * band.rows;
+    }
+    if (wanted_ & RADIANCE) readPlanes(plane, 3, band, band.radiance);
+    if (wanted_ & DISTANCE) readPlanes(plane, 1, band, band.distance);
+    if (wanted_ & SOLID) readPlanes(plane, 1, band, band.solid);
+    if (wanted_ & NORMAL) readPlanes(plane, 3, band, band.normal);
+    if (wanted_ & LOCAL) readPlanes(plane, 3, band, band.local);
+    if (wanted_ & POSITION) readPlanes(plane, 3, band, band.position);
+  }
+
+  struct Light {
+    float rgb[3] = {0, 0, 0};
+  };
+  /// The integrators of shaders/integrators once more, for single pixels.
+  Light integrate(const RayQ& ray, const ExactHit& hit, V3 normal) const {
+    if (!hit) return {};
+    float cosine = static_cast<float>(-dot(normal, ray.direction));
+    cosine = job_.twoSided ? std::abs(cosine) : std::max(cosine, 0.f);
+    Light light{{cosine, cosine, cosine}};
+    if (const auto* dist = std::get_if<RayCastingDistIntegrator>(&scene_.integrator)) {
+      auto nearDist = static_cast<float>(dist->nearDist), farDist = static_cast<float>(dist->farDist);
+      float part = std::clamp((static_cast<float>(hit.t) - nearDist) / (farDist - nearDist), 0.f, 1.f);
+      for (int c = 0; c < 3; ++c) {
+        auto from = static_cast<float>(dist->nearColor[static_cast<std::size_t>(c)]);
+        auto to = static_cast<float>(dist->farColor[static_cast<std::size_t>(c)]);
+        light.rgb[c] = (from + part * (to - from)) * cosine;
+      }
+    }
+    return light;
+  }
+
+  void secondPass(Band& band, const Crop& crop) {
+    std::size_t doubts = 0;
+    for (const auto& list : doubtful_) doubts += list.size();
+    stats_.fallbackRays += doubts;
+    if (doubts == 0 && !surfaces_) return;
+    if (!second_) second_.emplace(scene_.world);
+    PixelRays rays(scene_, job_.width, job_.height, samples_);
+    auto rayOf = [&](std::size_t pixel, std::size_t sample) {
+      std::int64_t x = crop.x + static_cast<std::int64_t>(pixel) % band.width;
+      std::int64_t y = crop.y + band.firstRow + static_cast<std::int64_t>(pixel) / band.width;
+      auto n = static_cast<std::size_t>(samples_);
+      return rays.ray(x * samples_ + static_cast<std::int64_t>(sample % n),
+                      y * samples_ + static_cast<std::int64_t>(sample / n));
+    };
+    for (std::size_t sample = 0; sample < doubtful_.size(); ++sample) {
+      const auto& list = doubtful_[sample];
+      inParallel(list.size(), [&](std::size_t i) {
+        std::size_t pixel = list[i];
+        RayQ ray = rayOf(pixel, sample);
+        ExactHit hit = second_->cast(ray);
+        Light light = integrate(ray, hit, hit ? second_->surface(ray, hit).normal : V3{});
+        for (std::size_t c = 0; c < 3; ++c) {
+          if (wanted_ & RGB8) band.rgb8[3 * pixel + c] = level(light.rgb[c]);
+          if (wanted_ & RADIANCE) band.radiance[3 * pixel + c] += light.rgb[c];
+        }
+        if (wanted_ & DISTANCE)
+          band.distance[pixel] = hit ? static_cast<float>(hit.t) : std::numeric_limits<float>::infinity();
+        if (wanted_ & SOLID) band.solid[pixel] = hit.index;
+      });
+    }
+    if (surfaces_) fillSurfaces(band, rayOf);
+  }
+
+  template <class RayOf>
+  void fillSurfaces(Band& band, const RayOf& rayOf) {
+    const Channels& c = job_.channels;
+    std::size_t pixels = static_cast<std::size_t>(band.width) * band.rows;
+    if (c.normal) band.normal.assign(3 * pixels, 0);
+    if (c.local) band.local.assign(3 * pixels, 0);
+    if (c.position) band.position.assign(3 * pixels, 0);
+    inParallel(pixels, [&](std::size_t pixel) {
+      if (band.solid[pixel] < 0) return;
+      RayQ ray = rayOf(pixel, 0);
+      ExactHit hit = second_->castAt(ray, band.solid[pixel]);
+      if (!hit) hit = {band.solid[pixel], band.distance[pixel]};
+      Surface s = second_->surface(ray, hit);
+      V3 p = ray.origin + hit.t * ray.direction;
+      for (int k = 0; k < 3; ++k) {
+        std::size_t at = 3 * pixel + static_cast<std::size_t>(k);
+        if (c.normal) band.normal[at] = static_cast<float>(s.normal[k]);
+        if (c.local) band.local[at] = static_cast<float>(s.local[k]);
+        if (c.position) band.position[at] = static_cast<float>(p[k]);
+      }
+    });
+  }
+
+  gpu::Device& device_;
+  const Scene& scene_;
+  const RenderJob& job_;
+  CastStats& stats_;
+  Program program_;
+  bool exact_ = false, surfaces_ = false, radiance_ = false, others_ = false, warm_ = false;
+  int samples_ = 1, stride_ = 0;
+  std::uint32_t wanted_ = 0, capacity_ = 0;
+  std::vector<SearchPortion> portions_;
+  std::optional<gpu::Pipeline> pipeline_;
+  std::vector<gpu::Buffer> buffers_;                  // by binding
+  std::vector<std::vector<std::uint32_t>> doubtful_;  // by sample: pixels of the band
+  std::optional<SecondPass> second_;
+};
+
+}  // namespace
+
+void renderGpu(gpu::Device& device, const Scene& scene, const RenderJob& job, const CastOptions& options,
+               const BandSink& sink, CastStats& stats, const CastProgress& progress) {
+  Crop crop = job.crop;
+  if (crop.width == 0) crop = {0, 0, job.width, job.height};
+  // With several samples the other channels, which are of the pixel's centre, need a pass of their own.
+  bool together = job.samples == 1;
+  std::vector<std::unique_ptr<Pass>> passes;
+  auto addPass = [&](bool radiance, bool others) {
+    auto pass = std::make_unique<Pass>(device, scene, job, options, radiance, others, stats);
+    if (pass->needed()) passes.push_back(std::move(pass));
+  };
+  const Channels& c = job.channels;
+  if (together) {
+    addPass(true, true);
+  } else {
+    if (c.rgb8 || c.radiance) addPass(true, false);
+    if (c.distance || c.solid || c.normal || c.local || c.position) addPass(false, true);
+  }
+  if (passes.empty()) throw Error(Exit::usage, "render: no channel was asked for");
+
+  std::size_t perRow = 0, largest = 0;
+  for (const auto& pass : passes) {
+    perRow += pass->bytesPerRow(crop.width);
+    largest = std::max(largest, pass->bytesPerRow(crop.width));
+  }
+  const auto& limits = device.info().limits;
+  // The host holds a copy of a band, so half of the budget is the device's; and no band above 64 MiB: nothing is
+  // gained by it.
+  std::size_t room = std::min<std::size_t>(options.memoryBudget / 2, std::size_t{64} << 20);
+  std::size_t rows = std::min({room / perRow, std::size_t{limits.maxStorageBufferRange} / largest,
+                               std::size_t{limits.maxWorkGroupCount[1]} * 4, static_cast<std::size_t>(crop.height)});
+  if (rows == 0)
+    throw Error(Exit::usage, "render: one row of " + std::to_string(crop.width) + " pixels takes " +
+                                 std::to_string(perRow) + " bytes, expected at most " +
+                                 std::to_string(std::min<std::size_t>(room, limits.maxStorageBufferRange)));
+  int bandRows = static_cast<int>(rows);
+  for (auto& pass : passes) pass->makeBuffers(crop.width, std::min(bandRows, crop.height));
+  stats.leftOut = leftOutLines(passes.front()->program(), scene.world, job.channels);
+  if (bandRows < crop.height)
+    stats.plan.push_back("in bands of " + std::to_string(bandRows) + " rows: " + std::to_string(perRow) +
+                         " bytes a row, at most " + std::to_string(room) + " a band");
+  for (int first = 0; first < crop.height; first += bandRows) {
+    Band band;
+    band.firstRow = first;
+    band.rows = std::min(bandRows, crop.height - first);
+    band.width = crop.width;
+    for (auto& pass : passes) pass->run(band, crop);
+    stats.deviceBytes = device.peakBytes();
+    sink(band);
+    if (progress) progress(double(first + band.rows) / crop.height);
+  }
+}
+
+}  // namespace solidcast

@@ -1,0 +1,115 @@
+// AABox on the GPU's side; the mathematics is told in shaders/solids/box.glsl.
+#pragma once
+#include <utility>
+
+#include "host/cast/solids/quad.h"
+
+namespace solidcast {
+
+struct Corners {
+  V3 lo, hi;
+};
+inline Corners corners(const AABox& box) {
+  V3 a(box.corner1), b(box.corner2), lo, hi;
+  for (int i = 0; i < 3; ++i) lo[i] = smaller(a[i], b[i]), hi[i] = larger(a[i], b[i]);
+  return {lo, hi};
+}
+
+/// A box without thickness on one axis, seen from outside that plane, is a quad whose normal faces the eye. (In the
+/// box's own form every hit would be a tie of the two faces.)
+inline bool packFlat(const Corners& c, const EyeFrame& eye, f128 index, RowWriter& out) {
+  V3 size = c.hi - c.lo;
+  int flat = size.x == 0 ? 0 : size.y == 0 ? 1 : size.z == 0 ? 2 : -1;
+  if (flat < 0) return false;
+  int a = (flat + 1) % 3, b = (flat + 2) % 3;
+  if (size[a] == 0 || size[b] == 0 || eye.origin[flat] == c.lo[flat]) return false;
+  if (eye.origin[flat] < c.lo[flat]) std::swap(a, b);
+  Span s{c.lo, {}, {}};
+  s.e1[a] = size[a], s.e2[b] = size[b];
+  spanForms(s, eye, index, out);
+  return true;
+}
+
+inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const EyeWriters& out) {
+  Corners c = corners(box);
+  if (packFlat(c, eye, index, out.quad())) return;
+  RowWriter& rows = out.box();
+  V3 up, cap, low1, low2, onFace;
+  f128 big = bigNumber(rows.type()), steep = steepNumber(rows.type()), steepest = 0;
+  bool inside = true;
+  for (int i = 0; i < 3; ++i) {
+    f128 a = (c.lo[i] - eye.origin[i]) / eye.unit, b = (c.hi[i] - eye.origin[i]) / eye.unit;
+    onFace[i] = ldexpq(1, 100);
+    if (a > 0 || b < 0) {
+      inside = false;
+      up[i] = 1 / (a > 0 ? a : b), cap[i] = 0;
+      low1[i] = low2[i] = 1 / (a > 0 ? b : a);
+    } else {
+      up[i] = 0, cap[i] = big;
+      low1[i] = a == 0 ? -steep : 1 / a;
+      low2[i] = b == 0 ? steep : 1 / b;
+      if (a == 0 || b == 0) onFace[i] = 1;
+    }
+    for (f128 v : {up[i], low1[i], low2[i]})
+      if (fabsq(v) != steep) steepest = larger(steepest, fabsq(v));
+  }
+  rows.row(up, index);
+  rows.row(cap, inside ? 1 : 0);
+  rows.row(low1, steepest > 0 ? 1 / steepest : 1);
+  rows.row(low2, ldexpq(1, -26));
+  rows.row(onFace, 0);
+}
+
+/// The eye lies on the plane of a face: box.glsl needs BOX_FACE.
+inline bool eyeOnFacePlane(const AABox& box, const EyeFrame& eye) {
+  Corners c = corners(box);
+  for (int i = 0; i < 3; ++i)
+    if (eye.origin[i] == c.lo[i] || eye.origin[i] == c.hi[i]) return true;
+  return false;
+}
+
+inline void packWorld(const AABox& box, V3 origin, f128 index, RowWriter& out) {
+  Corners c = corners(box);
+  out.row(c.lo - origin, index);
+  out.row(c.hi - origin, 0);
+}
+
+inline Cut cut(const AABox& box, const RayQ& ray) {
+  Corners c = corners(box);
+  f128 enter = -1, leave = -1;
+  bool bounded = false, entered = false;
+  for (int i = 0; i < 3; ++i) {
+    f128 a = c.lo[i] - ray.origin[i], b = c.hi[i] - ray.origin[i], d = ray.direction[i];
+    if (fabsq(d) <= slack() * length(ray.direction) || d == 0) {
+      if (a > 0 || b < 0) return {};
+      continue;
+    }
+    f128 first = (d > 0 ? a : b) / d, second = (d > 0 ? b : a) / d;
+    enter = entered ? larger(enter, first) : first;
+    leave = bounded ? smaller(leave, second) : second;
+    entered = bounded = true;
+  }
+  if (!bounded || enter > leave + slack() * fabsq(leave)) return {};
+  f128 t = enter > 0 ? enter : leave;
+  return {t > 0, t};
+}
+
+inline Surface surface(const AABox& box, const RayQ& ray, f128 t) {
+  Corners c = corners(box);
+  V3 p = ray.origin + t * ray.direction;
+  int face = -1;
+  f128 nearest = 0;
+  for (int i = 0; i < 3; ++i) {  // the first axis among equals, as in the search
+    if (ray.direction[i] == 0) continue;
+    f128 off = smaller(fabsq(p[i] - c.lo[i]), fabsq(p[i] - c.hi[i]));
+    if (face < 0 || off < nearest - slack() * (length(p) + length(c.hi - c.lo))) face = i, nearest = off;
+  }
+  // Entered from outside: the normal is against the ray; left from inside or from the surface: along it.
+  bool entering = false;
+  for (int i = 0; i < 3; ++i) entering = entering || ray.origin[i] < c.lo[i] || ray.origin[i] > c.hi[i];
+  V3 n;
+  n[face] = (ray.direction[face] > 0) == entering ? -1 : 1;
+  return {n, p};
+}
+
+}  // namespace solidcast

@@ -1,0 +1,102 @@
+// What every solid's packing and second pass are written with: the eye's frame, the writer of rows, rays in binary128.
+#pragma once
+#include <cstddef>
+#include <cstring>
+#include <vector>
+
+#include "host/cast/quad_precision.h"
+
+namespace solidcast {
+
+enum class RealType { f32, f64, df32 };  // ARITHMETIC 0, 1, 2 of shaders/numeric.glsl
+
+/// Unit roundoff u of the type, as numeric.glsl states it.
+inline f128 unitRoundoff(RealType type) {
+  return ldexpq(1, type == RealType::f32 ? -24 : type == RealType::f64 ? -53 : -44);
+}
+/// Stands for infinity in records: BIG of numeric.glsl. Half as large a one survives a product with a direction.
+inline f128 bigNumber(RealType type) { return type == RealType::f64 ? f128(1e250) : f128(3e37); }
+inline f128 steepNumber(RealType type) { return type == RealType::f64 ? f128(1e240) : f128(1e30); }
+
+/// Rows of four numbers, each rounded once from binary128.
+class RowWriter {
+ public:
+  explicit RowWriter(RealType type) : type_(type) {}
+
+  void row(V3 v, f128 w) { row(v.x, v.y, v.z, w); }
+  void row(f128 x, f128 y, f128 z, f128 w) {
+    const f128 v[4] = {x, y, z, w};
+    if (type_ == RealType::f64) {
+      double d[4];
+      for (int i = 0; i < 4; ++i) d[i] = static_cast<double>(v[i]);
+      append(d, sizeof d);
+    } else {
+      float high[4], low[4];
+      for (int i = 0; i < 4; ++i) {
+        high[i] = static_cast<float>(v[i]);
+        low[i] = static_cast<float>(v[i] - high[i]);
+      }
+      append(high, sizeof high);
+      if (type_ == RealType::df32) append(low, sizeof low);
+    }
+    ++rows_;
+  }
+
+  RealType type() const { return type_; }
+  std::size_t rows() const { return rows_; }
+  const std::vector<std::byte>& bytes() const { return bytes_; }
+
+ private:
+  void append(const void* data, std::size_t size) {
+    const auto* from = static_cast<const std::byte*>(data);
+    bytes_.insert(bytes_.end(), from, from + size);
+  }
+
+  RealType type_;
+  std::size_t rows_ = 0;
+  std::vector<std::byte> bytes_;
+};
+
+/// The shared origin of all rays and the camera's axes (unit, orthogonal), with the unit of length of the records:
+/// lengths are divided by `unit`, a power of two that keeps fp32's squares in range (1 for fp64).
+struct EyeFrame {
+  V3 origin, right, upward, backward;
+  f128 unit = 1;
+
+  V3 toCamera(V3 world) const { return {dot(world, right), dot(world, upward), dot(world, backward)}; }
+  V3 relative(const Triple& point) const { return (V3(point) - origin) / unit; }
+};
+
+/// One writer a kind, by its number in solids.def: a solid may need another kind's careful form (a sphere with the eye
+/// on it is cast as a quadric), one that holds the eye in its plane needs none.
+struct EyeWriters {
+  RowWriter* writers;
+  RowWriter& plane() const { return writers[0]; }
+  RowWriter& sphere() const { return writers[1]; }
+  RowWriter& box() const { return writers[2]; }
+  RowWriter& disc() const { return writers[3]; }
+  RowWriter& triangle() const { return writers[4]; }
+  RowWriter& quad() const { return writers[5]; }
+  RowWriter& quadric() const { return writers[6]; }
+  RealType type() const { return writers[0].type(); }
+};
+
+/// A ray in binary128, t counted in lengths of its direction.
+struct RayQ {
+  V3 origin, direction;
+};
+
+/// Second pass: what one solid says of a ray. Decisions within binary128's own rounding count as on the edge (hit).
+struct Cut {
+  bool hit = false;
+  f128 t = 0;
+};
+
+/// Relative rounding that a decision in binary128 is granted; far above 2^-113, far below anything fp64 can tell.
+inline f128 slack() { return ldexpq(1, -100); }
+
+struct Surface {
+  V3 normal, local;
+};
+
+}  // namespace solidcast

@@ -1,0 +1,29 @@
+// Quad on the GPU's side: the triangle's forms with another inside test (shaders/solids/quad.glsl).
+#pragma once
+#include "host/cast/solids/triangle.h"
+
+namespace solidcast {
+
+inline Span span(const Quad& q) { return {V3(q.vertex), V3(q.span1), V3(q.span2)}; }
+
+inline void packEye(const Quad& quad, const EyeFrame& eye, f128 index, const EyeWriters& out) {
+  spanForms(span(quad), eye, index, out.quad());
+}
+
+inline void packWorld(const Quad& quad, V3 origin, f128 index, RowWriter& out) {
+  spanWorld(span(quad), origin, index, out);
+}
+
+inline Cut cut(const Quad& quad, const RayQ& ray) {
+  SpanCut c = cutSpan(span(quad), ray);
+  bool inside = c.beta >= -c.doubt && c.gamma >= -c.doubt && c.beta <= 1 + c.doubt && c.gamma <= 1 + c.doubt;
+  return inside ? c.plane : Cut{};
+}
+
+inline Surface surface(const Quad& quad, const RayQ& ray, f128) {
+  Span s = span(quad);
+  SpanCut c = cutSpan(s, ray);
+  return {normalized(cross(s.e1, s.e2)), {c.beta, c.gamma, 0}};
+}
+
+}  // namespace solidcast

@@ -1,0 +1,72 @@
+// Triangle on the GPU's side; the mathematics is told in shaders/solids/triangle.glsl. The quad shares its forms.
+#pragma once
+#include "host/cast/solids/disc.h"
+
+namespace solidcast {
+
+/// v1 + beta e1 + gamma e2
+struct Span {
+  V3 v1, e1, e2;
+};
+
+inline Span span(const Triangle& t) { return {V3(t.v1), V3(t.v2) - V3(t.v1), V3(t.v3) - V3(t.v1)}; }
+
+inline void spanForms(const Span& s, const EyeFrame& eye, f128 index, RowWriter& out) {
+  V3 f = (s.v1 - eye.origin) / eye.unit, e1 = s.e1 / eye.unit, e2 = s.e2 / eye.unit;
+  V3 n = cross(e1, e2);
+  f128 num = dot(n, f), n2 = dot(n, n);
+  if (num == 0) return;  // the eye is in its plane
+  V3 U = (num * cross(e2, n) - dot(cross(f, e2), n) * n) / (n2 * num);
+  V3 V = (num * cross(n, e1) - dot(cross(e1, f), n) * n) / (n2 * num);
+  planarForms(n, num, U, V, length(n / num) + length(U) + length(V), eye, index, out);
+}
+
+inline void spanWorld(const Span& s, V3 origin, f128 index, RowWriter& out) {
+  out.row(s.v1 - origin, index);
+  out.row(s.e1, 0);
+  out.row(s.e2, 0);
+  out.row(normalized(cross(s.e1, s.e2)), 0);
+}
+
+struct SpanCut {
+  Cut plane;
+  f128 beta = 0, gamma = 0;
+  f128 doubt = 0;  // of beta and gamma
+};
+
+inline SpanCut cutSpan(const Span& s, const RayQ& ray) {
+  V3 n = cross(s.e1, s.e2);
+  SpanCut c;
+  c.plane = cutPlane(n, s.v1, ray);
+  if (!c.plane.hit) return c;
+  // Determinants with the origin: no point is formed, so a far origin costs nothing but its own size.
+  V3 f = ray.origin - s.v1, d = ray.direction;
+  f128 det = -dot(n, d);
+  c.beta = dot(cross(d, s.e2), f) / det;
+  c.gamma = dot(cross(s.e1, d), f) / det;
+  f128 reach = length(d) * length(f) * (length(s.e1) + length(s.e2));
+  c.doubt = slack() * (1 + reach / fabsq(det));
+  return c;
+}
+
+inline void packEye(const Triangle& triangle, const EyeFrame& eye, f128 index, const EyeWriters& out) {
+  spanForms(span(triangle), eye, index, out.triangle());
+}
+
+inline void packWorld(const Triangle& triangle, V3 origin, f128 index, RowWriter& out) {
+  spanWorld(span(triangle), origin, index, out);
+}
+
+inline Cut cut(const Triangle& triangle, const RayQ& ray) {
+  SpanCut c = cutSpan(span(triangle), ray);
+  bool inside = c.beta >= -c.doubt && c.gamma >= -c.doubt && c.beta + c.gamma <= 1 + c.doubt;
+  return inside ? c.plane : Cut{};
+}
+
+inline Surface surface(const Triangle& triangle, const RayQ& ray, f128) {
+  Span s = span(triangle);
+  SpanCut c = cutSpan(s, ray);
+  return {normalized(cross(s.e1, s.e2)), {1 - c.beta - c.gamma, c.beta, c.gamma}};
+}
+
+}  // namespace solidcast
