@@ -35,6 +35,15 @@ class Families : public testing::TestWithParam<Parameter> {
 };
 INSTANTIATE_TEST_SUITE_P(, Families, testing::ValuesIn(everyFamily()), label);
 
+// Without the inputs near the ends of fp32, which scaling would round.
+std::vector<Parameter> scalableFamilies() {
+  std::vector<Parameter> list = everyFamily();
+  std::erase_if(list, [](const Parameter& p) { return p.second == "denormal" || p.second == "scaled"; });
+  return list;
+}
+class ScalableFamilies : public Families {};
+INSTANTIATE_TEST_SUITE_P(, ScalableFamilies, testing::ValuesIn(scalableFamilies()), label);
+
 double relative(Real a, Real b) { return a == b ? 0 : static_cast<double>(fabsq(a - b) / fmaxq(fabsq(a), fabsq(b))); }
 
 double distance(const Real3& a, const Real3& b) {
@@ -109,13 +118,7 @@ void scaleBy(double s, Shape& shape, QueryRay& ray) {
   for (float& x : ray.origin) x = static_cast<float>(x * s);
 }
 
-TEST_P(Families, ScalingByPowersOfTwoScalesT) {
-  // Inputs near the ends of fp32 are left out: scaling would round them.
-  if (GetParam().second == "denormal" || GetParam().second == "scaled") {
-    const QueryRay ray{{0, 0, 0x1p-149f}, {0, 0, -1}};
-    EXPECT_EQ(ray.origin[2] / 2, 0) << "why these two have no scaled counterpart";
-    return;
-  }
+TEST_P(ScalableFamilies, ScalingByPowersOfTwoScalesT) {
   for (Batch batch : batches(300, 12)) {
     QueryRay ray = batch.rays[0];
     const Truth before = intersect(batch.shape, exactRay(ray), Effort::full);
