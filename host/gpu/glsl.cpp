@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <regex>
 #include <sstream>
 #include <utility>
 
@@ -34,9 +33,9 @@ class Includer : public glslang::TShader::Includer {
   Includer(const std::vector<fs::path>& folders, std::vector<fs::path>& files) : folders_(folders), files_(files) {}
 
   IncludeResult* includeLocal(const char* header, const char* includer, size_t depth) override {
-    looked_ = fs::path(includer).parent_path().string();
-    if (looked_.empty()) looked_ = ".";
-    return depth > deepest ? nullptr : found(fs::path(includer).parent_path() / header);
+    const fs::path beside = fs::path(includer).parent_path();
+    looked_ = beside.empty() ? std::string(".") : beside.string();
+    return depth > deepest ? nullptr : found(beside / header);
   }
 
   IncludeResult* includeSystem(const char* header, const char*, size_t depth) override {
@@ -78,25 +77,37 @@ class Includer : public glslang::TShader::Includer {
   std::string looked_;  // for the message
 };
 
+/// Where the `:line:` of "path:line: message" begins; npos where there is none. The path may contain anything.
+std::size_t lineNumberAt(const std::string& message) {
+  for (std::size_t colon = message.find(':'); colon != std::string::npos; colon = message.find(':', colon + 1)) {
+    const std::size_t end = message.find_first_not_of("0123456789", colon + 1);
+    if (end != std::string::npos && end > colon + 1 && message.compare(end, 2, ": ") == 0) return colon;
+  }
+  return std::string::npos;
+}
+
 /// glslang's `ERROR: path:line: 'token' : message` becomes `path:line: error: 'token': message`. Warnings and
 /// glslang's closing remarks are dropped; what has no place gets the file's name.
 std::string reshaped(const std::string& log, const std::string& name) {
-  static const std::regex placed(R"(^ERROR: (.*?):(\d+): (?:'(.*?)' : +)?(.*)$)");
-  static const std::regex remark(R"(^ERROR: (\d+ compilation errors\.|.*: compilation terminated).*$)");
+  const std::string prefix = "ERROR: ";
   std::istringstream lines(log);
-  std::string line, out;
-  std::smatch part;
-  while (std::getline(lines, line)) {
-    line.erase(line.find_last_not_of(' ') + 1);
-    if (std::regex_match(line, remark) || !line.starts_with("ERROR: ")) continue;
-    if (!out.empty()) out += '\n';
-    if (std::regex_match(line, part, placed)) {
-      out += part[1].str() + ":" + part[2].str() + ": error: ";
-      if (part[3].length() > 0) out.append(1, '\'').append(part[3]).append("': ");
-      out += part[4];
-    } else {
-      out += name + ": error: " + line.substr(7);
+  std::string out;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(prefix)) continue;
+    line.erase(line.find_last_not_of(' ') + 1).erase(0, prefix.size());
+    std::string place = name, message = line;
+    if (const std::size_t number = lineNumberAt(line); number != std::string::npos) {
+      const std::size_t end = line.find(": ", number + 1);
+      place = line.substr(0, end);
+      message = line.substr(end + 2);
     }
+    if (message.find("compilation errors.") != std::string::npos || message == "compilation terminated") continue;
+    if (message.starts_with("'' : ")) message.erase(0, 5);
+    if (message.starts_with("'")) {
+      if (const std::size_t end = message.find("' : "); end != std::string::npos) message.erase(end + 1, 1);
+    }
+    message.erase(0, message.find_first_not_of(' '));
+    out.append(out.empty() ? "" : "\n").append(place).append(": error: ").append(message);
   }
   return out.empty() ? name + ": error: glslang gave no reason: " + log : out;
 }
