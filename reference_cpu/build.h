@@ -76,13 +76,17 @@ struct Build {
     std::vector<std::shared_ptr<SimpleGroup<T>>> groups(plain.groups.size());
     for (auto& group : groups) group = std::make_shared<SimpleGroup<T>>();
     std::vector<std::uint32_t> outerFirst{0};  // every group of the tree after the one that holds it
+    std::vector<bool> placed(plain.groups.size());
+    placed[0] = true;
     for (std::size_t i = 0; i < outerFirst.size(); ++i) {
       const std::uint32_t place = outerFirst[i];
       for (const GroupMember& member : plain.groups[place].members) {
-        if (member.index >= (member.isGroup ? plain.groups.size() : plain.solids.size()) ||
-            outerFirst.size() > plain.groups.size())
-          throw Error(Exit::usage, "world: group members do not form a tree, expected each group and solid once");
+        if (member.index >= (member.isGroup ? plain.groups.size() : plain.solids.size()))
+          throw Error(Exit::usage, "world: a group member does not exist, expected the index of a group or solid");
         if (member.isGroup) {
+          if (placed[member.index])
+            throw Error(Exit::usage, "world: a group is a member twice or of itself, expected a tree of groups");
+          placed[member.index] = true;
           groups[place]->add(groups[member.index]);
           outerFirst.push_back(member.index);
         } else {

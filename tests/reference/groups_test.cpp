@@ -103,6 +103,10 @@ TEST(Groups, WhatIsNoTreeIsRefused) {
   solidcast::World ring = worldOf({solidcast::Sphere{{0, 0, 0}, 1}});
   ring.groups[0].members.push_back({true, 0});
   EXPECT_THROW(castAt(ring, ray), Error);
+  solidcast::World twice = worldOf({solidcast::Sphere{{0, 0, 0}, 1}});
+  twice.groups.resize(2);
+  twice.groups[0].members = {{true, 1}, {true, 1}};
+  EXPECT_THROW(castAt(twice, ray), Error);
   solidcast::World outOfRange = worldOf({solidcast::Sphere{{0, 0, 0}, 1}});
   outOfRange.groups[0].members.push_back({false, 7});
   EXPECT_THROW(castAt(outOfRange, ray), Error);

@@ -235,9 +235,11 @@ TEST(Precisions, AgreeToTheirLastDigits) {
         unequal += f64.distance[pixel] != f128.distance[pixel];
         ASSERT_NEAR(f64.distance[pixel], f128.distance[pixel], 1e-7 * f128.distance[pixel]);
       }
-      if (f32.solid[pixel] != f128.solid[pixel]) ++flips;
-      else if (f128.solid[pixel] >= 0)
+      if (f32.solid[pixel] != f128.solid[pixel]) {
+        ++flips;
+      } else if (f128.solid[pixel] >= 0) {
         ASSERT_NEAR(f32.distance[pixel], f128.distance[pixel], 1e-3 * f128.distance[pixel]);
+      }
     }
     EXPECT_LE(unequal, 1);
     EXPECT_LE(flips, 3);
