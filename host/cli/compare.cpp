@@ -191,6 +191,16 @@ Result compareScene(const Compare& compare, std::optional<DifferencePicture>& pi
   return result;
 }
 
+/// One image alone would only be read as a scene, and the message about JSON would puzzle.
+void checkInputs(const Compare& compare) {
+  const std::string& first = compare.inputs.front();
+  for (const char* ending : {".png", ".pfm", ".hdr"})
+    if (compare.inputs.size() == 1 && first.ends_with(ending))
+      throw Error(Exit::usage, first + ": one image alone, expected a second one to compare it with, or a scene file");
+  if (compare.output == "-")
+    throw Error(Exit::usage, "--output: standard output takes the census, expected the name of a file");
+}
+
 /// Options that only a scene has a use for are refused for files, not ignored.
 void checkFileOptions(const CLI::App& verb) {
   for (const char* option : {"--integrator", "--size", "--samples", "--two-sided", "--crop", "--device", "--method",
@@ -204,6 +214,7 @@ void run(const CLI::App& verb, const Compare& compare) {
   if (compare.level && !(*compare.level >= 0)) throw Error(Exit::usage, "--max-level: expected a number from 0 up");
   if (compare.differing && *compare.differing < 0)
     throw Error(Exit::usage, "--max-differing: expected a whole number from 0 up");
+  checkInputs(compare);
   std::optional<DifferencePicture> picture;
   const bool files = compare.inputs.size() == 2;
   if (files) checkFileOptions(verb);

@@ -16,7 +16,7 @@ std::string row(const char* name, const std::string& value) {
 
 std::string count(std::int64_t number, std::int64_t of) {
   char text[64];
-  std::snprintf(text, sizeof text, "%12lld   %.4g %%", static_cast<long long>(number),
+  std::snprintf(text, sizeof text, "%12lld   %.6g %%", static_cast<long long>(number),
                 100.0 * static_cast<double>(number) / static_cast<double>(of));
   return text;
 }

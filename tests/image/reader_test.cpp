@@ -127,8 +127,8 @@ TEST(BadImages, AreRefusedWithOneLineThatNamesTheFile) {
       {text(hdr + "-Y 1 +X 2\n", {1, 1, 1, 2}), "damaged"},              // repeats before the first pixel
       {text(hdr + "-Y 1 +X 2\n", {5, 5, 5, 5, 1, 1, 1, 2}), "damaged"},  // repeats beyond the row
       {text(hdr + "-Y 1 +X 8\n", {2, 2, 0, 9}), "damaged"},              // another width than the header's
-      {text(hdr + "-Y 1 +X 8\n", {2, 2, 0, 8, 0, 0, 0, 0}), "damaged"},  // a run of nothing
-      {text(hdr + "-Y 1 +X 8\n", {2, 2, 0, 8, 200, 1}), "damaged"}};     // a run beyond the row
+      {text(hdr + "-Y 1 +X 8\n", {2, 2, 0, 8, 0, 136, 1, 136, 1, 136, 1, 136, 1}), "damaged"},  // a run of nothing
+      {text(hdr + "-Y 1 +X 8\n", {2, 2, 0, 8, 200, 1}), "damaged"}};                            // a run beyond the row
   for (const auto& [content, expected] : cases) {
     writeBytes(folder / "a.img", content);
     const std::string line = errorOf(Exit::usage, [&] { readImage(folder / "a.img"); });
