@@ -167,8 +167,8 @@ RenderJob makeJob(const ImageOptions& options, const Scene& scene, const Channel
 std::unique_ptr<gpu::Device> openDevice(const CastingOptions& options) {
   auto device = std::make_unique<gpu::Device>(gpu::Device::Options{options.device, options.validation});
   const gpu::DeviceInfo& info = device->info();
-  note("device " + std::to_string(info.index) + ": " + info.name + " (" + info.driver +
-       (info.driverInfo.empty() ? "" : " " + info.driverInfo) + ", Vulkan " + info.apiVersion + ")");
+  note("device " + std::to_string(info.index) + ": " + info.name + ", " +
+       (info.driverInfo.empty() ? info.driver : info.driverInfo) + ", Vulkan " + info.apiVersion);
   return device;
 }
 
