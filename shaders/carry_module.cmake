@@ -11,6 +11,7 @@ execute_process(
 if(result)
   # glslang: "ERROR: path:line: 'token' : message"; compilers and editors want "path:line: error: message".
   string(REGEX REPLACE "(ERROR|WARNING): ([^\n]*:[0-9]+): '([^\n']*)' : +" "\\2: error: '\\3': " output "${output}")
+  string(REPLACE "error: '': " "error: " output "${output}")
   message(FATAL_ERROR "${output}")
 endif()
 
