@@ -125,6 +125,30 @@ TEST(Schema, RefusesWhatTheLoaderRefuses) {
   EXPECT_EQ(violation(rules, Json::parse(withSolids(""))), "");
 }
 
+TEST(Documentation, ExamplesAreScenes) {
+  const std::string text = readText(kRoot / "docs/scene-format.md");
+  const Json rules = schema();
+  std::set<std::string> shown;
+  for (std::size_t at = text.find("```json\n"); at != std::string::npos; at = text.find("```json\n", at)) {
+    const std::size_t begin = at + 8, end = text.find("```", begin);
+    const std::string block = text.substr(begin, end - begin);
+    at = end + 3;
+    const Json example = withComments(block);
+    const std::string type = example.value("type", "scene");
+    shown.insert(type);
+    std::string scene = withSolids(block);
+    if (type == "scene") scene = block;
+    if (type.starts_with("casting")) scene = withMember("\"integrator\": " + block);
+    if (example.contains("forward")) scene = "{" + kImage + ", \"solids\": [], \"camera\": " + block + "}";
+    EXPECT_EQ(refusal(scene), "accepted") << block;
+    EXPECT_EQ(violation(rules, withComments(scene)), "") << block;
+  }
+  const std::set<std::string> expected = {"scene",   "perspective", "orthographic",   "environment", "casting",
+                                          "sphere",  "castingdist", "infinite_plane", "box",         "disc",
+                                          "quadric", "triangle",    "quad",           "group"};
+  EXPECT_EQ(shown, expected);
+}
+
 /// The keys that a refusal of the unknown key "?" lists.
 std::set<std::string> keysOf(const std::string& line) {
   const std::size_t begin = line.find("one of ") + 7, end = line.find(" (the nearest");
