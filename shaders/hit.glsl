@@ -41,23 +41,30 @@ Best noHit() {
 #endif
 }
 
-// A sign of `value` was used whose rounding error is at most DOUBT |d|^2 / weight.
-void decided(inout Best best, real value, real weight) {
+// A sign of `value` was used whose rounding error is at most DOUBT |d|^2.
+void decided(inout Best best, real value) {
 #ifdef EXACT
-  real m = mul(magnitude(value), weight);
+  real m = magnitude(value);
   best.margin = select(best.margin, m, less(m, best.margin));
 #endif
 }
+
+// Some finite flat solid can be seen at so flat an angle that s itself is in doubt there. The host knows the bound:
+// |cosine| >= distance of the plane / distance of the farthest corner.
+#ifndef GRAZING
+#define GRAZING false
+#endif
 
 // A candidate at inverse distance s. At equal s the solid with the lower index wins; `exact` leaves that, like
 // every near tie, to the second pass.
 void offer(inout Best best, bool inside, real s, real cosine, real index) {
 #ifdef EXACT
-  bool nearer = inside && less(best.s, s);
-  real loser = select(s, best.s, nearer);
-  best.second = select(best.second, loser, inside && less(best.second, loser));
+  real candidate = select(number(0.0), s, inside);
+  bool nearer = less(best.s, candidate);
+  real loser = select(candidate, best.s, nearer);
+  best.second = select(best.second, loser, less(best.second, loser));
 #else
-  bool nearer = inside && (less(best.s, s) || (!less(s, best.s) && less(number(0.0), s) && less(index, best.index)));
+  bool nearer = inside && (less(best.s, s) || (atLeast(s, best.s) && less(index, best.index)));
 #endif
   best.s = select(best.s, s, nearer);
   best.cosine = select(best.cosine, cosine, nearer);

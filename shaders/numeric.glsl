@@ -134,6 +134,15 @@ real magnitude(real a) { return abs(a); }
 
 #endif
 
+// Larger than any quantity that is compared with it: "not in doubt".
+real settled() {
+#if ARITHMETIC == 2
+  return real(BIG, 0.0);
+#else
+  return real(BIG);
+#endif
+}
+
 real smaller(real a, real b) { return select(b, a, less(a, b)); }
 real larger(real a, real b) { return select(b, a, less(b, a)); }
 

@@ -236,10 +236,10 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
     result[k].point = point;
     result[k].direction = direction[k];
 #else
-    real length = root(ray[k].squared);
     result[k].hit = less(number(0.0), best[k].s);
-    result[k].distance = toFloat(mul(quotient(length, best[k].s), viewRow(0u).z));
-    result[k].cosine = toFloat(quotient(best[k].cosine, length));
+    result[k].distance = toFloat(mul(quotient(root(ray[k].squared), best[k].s), viewRow(0u).z));
+    precise float cosine = toFloat(best[k].cosine) / sqrt(toFloat(ray[k].squared));
+    result[k].cosine = cosine;
     result[k].index = toFloat(best[k].index);
     result[k].doubtful = false;
 #ifdef EXACT

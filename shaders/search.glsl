@@ -6,7 +6,6 @@
 #ifndef SOLIDCAST_SEARCH
 #define SOLIDCAST_SEARCH
 #include "records.glsl"
-#include "hit.glsl"
 
 #define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) \
   layout(constant_id = NUMBER) const uint KIND##_COUNT = 0u;
@@ -15,7 +14,10 @@
 
 layout(constant_id = 23) const bool BOX_FACE_PLANE = false;  // some box has the eye on the plane of a face
 #define BOX_FACE BOX_FACE_PLANE
+layout(constant_id = 30) const bool SOME_GRAZE = false;  // some flat solid is seen at too flat an angle
+#define GRAZING SOME_GRAZE
 
+#include "hit.glsl"
 #include "solids/plane.glsl"
 #include "solids/sphere.glsl"
 #include "solids/box.glsl"

@@ -1,6 +1,7 @@
 // Scene -> plan -> records -> pipeline -> dispatches -> bands or hits. The GPU side's two calls.
 #pragma once
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,7 +36,24 @@ struct CastStats {
 
 using CastProgress = std::function<void(double fraction)>;
 
-/// Renders on the device; bands come to `sink` from the top down, each small enough for the memory budget.
+/// Renders on the device. Keeps its pipelines and records, so that it can render again. The scene and the job must
+/// outlive it.
+class ImageCaster {
+ public:
+  ImageCaster(gpu::Device& device, const Scene& scene, const RenderJob& job, const CastOptions& options);
+  ~ImageCaster();
+  /// Bands come to `sink` from the top down, each small enough for the memory budget.
+  void render(const BandSink& sink, const CastProgress& progress = {});
+  /// Only the shader, over the whole crop: nothing is read back. GPU time in ms. For benchmarks.
+  double dispatchOnly();
+  const CastStats& stats() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// ImageCaster for one picture.
 void renderGpu(gpu::Device& device, const Scene& scene, const RenderJob& job, const CastOptions& options,
                const BandSink& sink, CastStats& stats, const CastProgress& progress = {});
 

@@ -56,6 +56,7 @@ gpu::Specialisation recordConstants(const Program& program, const Records& searc
   s[recordRaws] = atLeastOne(search.raws);
   s[worldRaws] = atLeastOne(world.raws);
   s[boxFacePlane] = search.boxOnFace;
+  s[someGraze] = search.grazing;
   return s;
 }
 

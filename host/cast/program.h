@@ -41,7 +41,8 @@ enum Constant : std::uint32_t {
   samples,
   wanted,
   doubt,
-  hitsInDoubt
+  hitsInDoubt,
+  someGraze
 };
 std::uint32_t bits(float value);
 

@@ -99,7 +99,8 @@ std::uint32_t Records::solids() const {
 
 Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
   std::vector<RowWriter> rows = writers(type);
-  EyeWriters out{rows.data()};
+  bool grazing = false;
+  EyeWriters out{rows.data(), &grazing};
   bool onFace = false;
   for (std::size_t i = 0; i < world.solids.size(); ++i) {
     const Shape& shape = world.solids[i].shape;
@@ -108,6 +109,7 @@ Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
   }
   Records records = joined(rows, true);
   records.boxOnFace = onFace;
+  records.grazing = grazing;
   return records;
 }
 

@@ -21,6 +21,7 @@ struct Records {
   std::array<std::uint32_t, kindCount> count{}, firstRow{}, rowsPer{};
   std::vector<std::byte> bytes;
   std::size_t raws = 0;                              // vec4 or dvec4 that the rows take
+  bool grazing = false;                              // GRAZING of hit.glsl
   bool boxOnFace = false;                            // BOX_FACE of box.glsl
   std::vector<std::array<std::uint32_t, 2>> places;  // world records: kind and row by index of the solid
   std::uint32_t solids() const;

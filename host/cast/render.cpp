@@ -117,7 +117,6 @@ class Pass {
     return (static_cast<std::size_t>(width) + 3) / 4 * 4 * (wordsOf(wanted_) * 4 + state) + width / 2;
   }
   const Program& program() const { return program_; }
-  bool needed() const { return wanted_ != 0; }
 
   void makeBuffers(int width, int rows) {
     stride_ = (width + 3) / 4 * 4;
@@ -129,6 +128,39 @@ class Pass {
       buffers_[6] = device_.makeBuffer(portions_.size() > 1 ? pixels * 48 : 64, gpu::BufferUse::storage);
   }
 
+  /// Runs the shader over the band and keeps the list of doubts.
+  void dispatch(const Band& band, const Crop& crop) {
+    if (doubtful_.size() < static_cast<std::size_t>(samples_) * samples_) doubtful_.resize(samples_ * samples_);
+    std::vector<const gpu::Buffer*> bound;
+    for (const gpu::Buffer& b : buffers_) bound.push_back(b.bytes().empty() ? nullptr : &b);
+    for (int sample = 0; sample < samples_ * samples_; ++sample) {
+      if (exact_) buffers_[4].as<std::uint32_t>()[0] = 0;
+      std::vector<PixelPush> pushes;
+      for (std::size_t p = 0; p < portions_.size(); ++p) {
+        std::uint32_t stage = (p == 0 ? 1u : 0u) | (p + 1 == portions_.size() ? 2u : 0u);
+        pushes.push_back({u(job_.width), u(job_.height), u(crop.x), u(crop.y + band.firstRow), u(band.width),
+                          u(band.rows), u(stride_), stage, u(sample % samples_), u(sample / samples_), portions_[p]});
+      }
+      std::vector<gpu::Dispatch> dispatches;
+      for (const PixelPush& push : pushes)
+        dispatches.push_back({&*pipeline_,
+                              bound,
+                              std::as_bytes(std::span(&push, 1)),
+                              {(u(stride_) / 4 + 15) / 16, (u(band.rows) + 3) / 4, 1}});
+      auto start = Clock::now();
+      double ms = device_.run(dispatches);
+      if (!warm_) stats_.first_dispatch_ms += since(start);
+      warm_ = true;
+      stats_.dispatch_ms += ms;
+      stats_.rays += static_cast<std::uint64_t>(band.width) * band.rows;
+      if (!exact_) continue;
+      auto doubts = buffers_[4].as<std::uint32_t>();
+      if (doubts[0] > capacity_) return;
+      auto& list = doubtful_[static_cast<std::size_t>(sample)];
+      list.assign(doubts.begin() + 2, doubts.begin() + 2 + doubts[0]);
+      std::sort(list.begin(), list.end());
+    }
+  }
   /// Fills the band's channels; the band's geometry is set already.
   void run(Band& band, const Crop& crop) {
     dispatch(band, crop);
@@ -162,38 +194,6 @@ class Pass {
     buffers_[4].as<std::uint32_t>()[1] = capacity_;
   }
 
-  void dispatch(const Band& band, const Crop& crop) {
-    if (doubtful_.size() < static_cast<std::size_t>(samples_) * samples_) doubtful_.resize(samples_ * samples_);
-    std::vector<const gpu::Buffer*> bound;
-    for (const gpu::Buffer& b : buffers_) bound.push_back(b.bytes().empty() ? nullptr : &b);
-    for (int sample = 0; sample < samples_ * samples_; ++sample) {
-      if (exact_) buffers_[4].as<std::uint32_t>()[0] = 0;
-      std::vector<PixelPush> pushes;
-      for (std::size_t p = 0; p < portions_.size(); ++p) {
-        std::uint32_t stage = (p == 0 ? 1u : 0u) | (p + 1 == portions_.size() ? 2u : 0u);
-        pushes.push_back({u(job_.width), u(job_.height), u(crop.x), u(crop.y + band.firstRow), u(band.width),
-                          u(band.rows), u(stride_), stage, u(sample % samples_), u(sample / samples_), portions_[p]});
-      }
-      std::vector<gpu::Dispatch> dispatches;
-      for (const PixelPush& push : pushes)
-        dispatches.push_back({&*pipeline_,
-                              bound,
-                              std::as_bytes(std::span(&push, 1)),
-                              {(u(stride_) / 4 + 15) / 16, (u(band.rows) + 3) / 4, 1}});
-      auto start = Clock::now();
-      double ms = device_.run(dispatches);
-      if (!warm_) stats_.first_dispatch_ms += since(start);
-      warm_ = true;
-      stats_.dispatch_ms += ms;
-      stats_.rays += static_cast<std::uint64_t>(band.width) * band.rows;
-      if (!exact_) continue;
-      auto doubts = buffers_[4].as<std::uint32_t>();
-      if (doubts[0] > capacity_) return;
-      auto& list = doubtful_[static_cast<std::size_t>(sample)];
-      list.assign(doubts.begin() + 2, doubts.begin() + 2 + doubts[0]);
-      std::sort(list.begin(), list.end());
-    }
-  }
   static std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
 
   template <class T>
@@ -324,57 +324,101 @@ class Pass {
 
 }  // namespace
 
+struct ImageCaster::Impl {
+  gpu::Device& device;
+  const Scene& scene;
+  const RenderJob& job;
+  Crop crop;
+  CastStats stats;
+  std::vector<std::unique_ptr<Pass>> passes;
+  int bandRows = 0;
+
+  Impl(gpu::Device& d, const Scene& s, const RenderJob& j, const CastOptions& options)
+      : device(d), scene(s), job(j), crop(j.crop) {
+    if (crop.width == 0) crop = {0, 0, job.width, job.height};
+    const Channels& c = job.channels;
+    bool radiance = c.rgb8 || c.radiance;
+    bool others = c.distance || c.solid || c.normal || c.local || c.position;
+    if (!radiance && !others) throw Error(Exit::usage, "render: no channel was asked for");
+    // With several samples the other channels, which are of the pixel's centre, need a pass of their own.
+    if (job.samples == 1 || !others || !radiance) {
+      addPass(options, radiance, others);
+    } else {
+      addPass(options, true, false);
+      addPass(options, false, true);
+    }
+    bandRows = rowsInBudget(options.memoryBudget);
+    for (auto& pass : passes) pass->makeBuffers(crop.width, bandRows);
+    stats.leftOut = leftOutLines(passes.front()->program(), scene.world, job.channels);
+    stats.deviceBytes = device.peakBytes();
+  }
+
+  void addPass(const CastOptions& options, bool radiance, bool others) {
+    passes.push_back(std::make_unique<Pass>(device, scene, job, options, radiance, others, stats));
+  }
+
+  int rowsInBudget(std::size_t budget) {
+    std::size_t perRow = 0, largest = 0;
+    for (const auto& pass : passes) {
+      perRow += pass->bytesPerRow(crop.width);
+      largest = std::max(largest, pass->bytesPerRow(crop.width));
+    }
+    const auto& limits = device.info().limits;
+    // The host holds a copy of a band, so half of the budget is the device's; and no band above 64 MiB: nothing is
+    // gained by it.
+    std::size_t room = std::min<std::size_t>(budget / 2, std::size_t{64} << 20);
+    std::size_t rows = std::min({room / perRow, std::size_t{limits.maxStorageBufferRange} / largest,
+                                 std::size_t{limits.maxWorkGroupCount[1]} * 4, static_cast<std::size_t>(crop.height)});
+    if (rows == 0)
+      throw Error(Exit::usage, "render: one row of " + std::to_string(crop.width) + " pixels takes " +
+                                   std::to_string(perRow) + " bytes, expected at most " +
+                                   std::to_string(std::min<std::size_t>(room, limits.maxStorageBufferRange)));
+    if (static_cast<int>(rows) < crop.height)
+      stats.plan.push_back("in bands of " + std::to_string(rows) + " rows: " + std::to_string(perRow) +
+                           " bytes a row, at most " + std::to_string(room) + " a band");
+    return static_cast<int>(rows);
+  }
+
+  void forEachBand(const std::function<void(Band&)>& f) {
+    for (int first = 0; first < crop.height; first += bandRows) {
+      Band band;
+      band.firstRow = first;
+      band.rows = std::min(bandRows, crop.height - first);
+      band.width = crop.width;
+      f(band);
+    }
+  }
+};
+
+ImageCaster::ImageCaster(gpu::Device& device, const Scene& scene, const RenderJob& job, const CastOptions& options)
+    : impl_(std::make_unique<Impl>(device, scene, job, options)) {}
+ImageCaster::~ImageCaster() = default;
+
+void ImageCaster::render(const BandSink& sink, const CastProgress& progress) {
+  impl_->forEachBand([&](Band& band) {
+    for (auto& pass : impl_->passes) pass->run(band, impl_->crop);
+    impl_->stats.deviceBytes = impl_->device.peakBytes();
+    int done = band.firstRow + band.rows;
+    sink(band);
+    if (progress) progress(double(done) / impl_->crop.height);
+  });
+}
+
+double ImageCaster::dispatchOnly() {
+  double before = impl_->stats.dispatch_ms;
+  impl_->forEachBand([&](Band& band) {
+    for (auto& pass : impl_->passes) pass->dispatch(band, impl_->crop);
+  });
+  return impl_->stats.dispatch_ms - before;
+}
+
+const CastStats& ImageCaster::stats() const { return impl_->stats; }
+
 void renderGpu(gpu::Device& device, const Scene& scene, const RenderJob& job, const CastOptions& options,
                const BandSink& sink, CastStats& stats, const CastProgress& progress) {
-  Crop crop = job.crop;
-  if (crop.width == 0) crop = {0, 0, job.width, job.height};
-  // With several samples the other channels, which are of the pixel's centre, need a pass of their own.
-  bool together = job.samples == 1;
-  std::vector<std::unique_ptr<Pass>> passes;
-  auto addPass = [&](bool radiance, bool others) {
-    auto pass = std::make_unique<Pass>(device, scene, job, options, radiance, others, stats);
-    if (pass->needed()) passes.push_back(std::move(pass));
-  };
-  const Channels& c = job.channels;
-  if (together) {
-    addPass(true, true);
-  } else {
-    if (c.rgb8 || c.radiance) addPass(true, false);
-    if (c.distance || c.solid || c.normal || c.local || c.position) addPass(false, true);
-  }
-  if (passes.empty()) throw Error(Exit::usage, "render: no channel was asked for");
-
-  std::size_t perRow = 0, largest = 0;
-  for (const auto& pass : passes) {
-    perRow += pass->bytesPerRow(crop.width);
-    largest = std::max(largest, pass->bytesPerRow(crop.width));
-  }
-  const auto& limits = device.info().limits;
-  // The host holds a copy of a band, so half of the budget is the device's; and no band above 64 MiB: nothing is
-  // gained by it.
-  std::size_t room = std::min<std::size_t>(options.memoryBudget / 2, std::size_t{64} << 20);
-  std::size_t rows = std::min({room / perRow, std::size_t{limits.maxStorageBufferRange} / largest,
-                               std::size_t{limits.maxWorkGroupCount[1]} * 4, static_cast<std::size_t>(crop.height)});
-  if (rows == 0)
-    throw Error(Exit::usage, "render: one row of " + std::to_string(crop.width) + " pixels takes " +
-                                 std::to_string(perRow) + " bytes, expected at most " +
-                                 std::to_string(std::min<std::size_t>(room, limits.maxStorageBufferRange)));
-  int bandRows = static_cast<int>(rows);
-  for (auto& pass : passes) pass->makeBuffers(crop.width, std::min(bandRows, crop.height));
-  stats.leftOut = leftOutLines(passes.front()->program(), scene.world, job.channels);
-  if (bandRows < crop.height)
-    stats.plan.push_back("in bands of " + std::to_string(bandRows) + " rows: " + std::to_string(perRow) +
-                         " bytes a row, at most " + std::to_string(room) + " a band");
-  for (int first = 0; first < crop.height; first += bandRows) {
-    Band band;
-    band.firstRow = first;
-    band.rows = std::min(bandRows, crop.height - first);
-    band.width = crop.width;
-    for (auto& pass : passes) pass->run(band, crop);
-    stats.deviceBytes = device.peakBytes();
-    sink(band);
-    if (progress) progress(double(first + band.rows) / crop.height);
-  }
+  ImageCaster caster(device, scene, job, options);
+  caster.render(sink, progress);
+  stats = caster.stats();
 }
 
 }  // namespace solidcast

@@ -35,18 +35,18 @@ void box_eye(uint row, EyeRay ray, inout Best best) {
   bool inner = less(number(0.0), c.w);
   bool hit = atLeast(up, lo);
   real s = select(up, lo, inner);
-  real decisive = select(sub(up, lo), number(1.0), inner);  // from inside there is nothing to miss
+  real decisive = select(sub(up, lo), settled(), inner);  // from inside there is nothing to miss
   // The face whose bound is s; at an edge the first axis. |d_i| = s |face distance|.
   bool onX = inner ? atLeast(loX, s) : atLeast(s, upX);
   bool onY = inner ? atLeast(loY, s) : atLeast(s, upY);
   real towards = magnitude(select(select(d.z, d.y, onY), d.x, onX));
-  decided(best, decisive, l1.w);
-  decided(best, select(number(1.0), towards, hit), l2.w);
+  decided(best, mul(decisive, l1.w));
+  if (GRAZING) decided(best, mul(select(settled(), towards, hit), l2.w));
   if (BOX_FACE) {
     real4 w = record(row + 4u);
-    decided(best, d.x, w.x);
-    decided(best, d.y, w.y);
-    decided(best, d.z, w.z);
+    decided(best, mul(d.x, w.x));
+    decided(best, mul(d.y, w.y));
+    decided(best, mul(d.z, w.z));
   }
   offer(best, hit, s, select(towards, negate(towards), inner), a.w);
 }

@@ -20,9 +20,9 @@ void disc_eye(uint row, EyeRay ray, inout Best best) {
   real u = linear(real3(u4.x, u4.y, u4.z), ray.direction);
   real v = linear(real3(v4.x, v4.y, v4.z), ray.direction);
   real inside = sub(mul(s, s), add(mul(u, u), mul(v, v)));
-  decided(best, inside, record(row + 3u).x);
+  decided(best, mul(inside, record(row + 3u).x));
   bool hit = atLeast(inside, number(0.0));
-  decided(best, select(number(1.0), s, hit), v4.w);
+  if (GRAZING) decided(best, mul(select(settled(), s, hit), v4.w));
   offer(best, hit, s, mul(s, m.w), u4.w);
 }
 

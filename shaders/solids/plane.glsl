@@ -14,7 +14,7 @@ void plane_eye(uint row, EyeRay ray, inout Best best) {
   real4 m = record(row);
   real4 more = record(row + 1u);
   real s = linear(real3(m.x, m.y, m.z), ray.direction);
-  decided(best, s, more.y);
+  decided(best, mul(s, more.y));
   offer(best, true, s, mul(s, m.w), more.x);
 }
 

@@ -1,26 +1,28 @@
 // Quad: the parallelogram vertex + u span1 + v span2, u and v in [0,1], edges included; normal span1 x span2.
 //
-// eye    the triangle's forms with e1 = span1, e2 = span2; hit where u >= 0, v >= 0, u <= s, v <= s.
+// eye    the triangle's forms with e1 = span1, e2 = span2; hit where the forms u, v, s - u, s - v are
+//        not negative; only signs count, so each is scaled to unit length.
 // free   Cramer's rule without divisions before the tests.
 // naive  the same divided through, as usually written.
-// Records as the triangle's: eye (m, k) (U, index) (V, weight of s) (weight of the edge tests, -, -, -),
-// world (vertex, index) (span1, -) (span2, -) (n/|n|, -)
+// eye record    (m, k) (U, index) (V, weight of s) (m - U, -) (m - V, -)
+// world record  (vertex, index) (span1, -) (span2, -) (n/|n|, -)
 #ifndef SOLIDCAST_QUAD
 #define SOLIDCAST_QUAD
 #include "../hit.glsl"
 
 void quad_eye(uint row, EyeRay ray, inout Best best) {
   real4 m = record(row);
-  real4 u4 = record(row + 1u);
-  real4 v4 = record(row + 2u);
+  real4 a = record(row + 1u);
+  real4 b = record(row + 2u);
+  real4 c = record(row + 3u);
+  real4 e = record(row + 4u);
   real s = linear(real3(m.x, m.y, m.z), ray.direction);
-  real u = linear(real3(u4.x, u4.y, u4.z), ray.direction);
-  real v = linear(real3(v4.x, v4.y, v4.z), ray.direction);
-  real inside = smaller(smaller(u, v), sub(s, larger(u, v)));
-  decided(best, inside, record(row + 3u).x);
+  real inside = smaller(smaller(linear(real3(a.x, a.y, a.z), ray.direction), linear(real3(b.x, b.y, b.z), ray.direction)),
+                        smaller(linear(real3(c.x, c.y, c.z), ray.direction), linear(real3(e.x, e.y, e.z), ray.direction)));
+  decided(best, inside);
   bool hit = atLeast(inside, number(0.0));
-  decided(best, select(number(1.0), s, hit), v4.w);
-  offer(best, hit, s, mul(s, m.w), u4.w);
+  if (GRAZING) decided(best, mul(select(settled(), s, hit), b.w));
+  offer(best, hit, s, mul(s, m.w), a.w);
 }
 
 #if ARITHMETIC != 2

@@ -34,10 +34,10 @@ void quadric_eye(uint row, EyeRay ray, inout Best best) {
   real sum = add(h, magnitude(B));
   real small = quotient(negate(A), select(add(B, B), sum, away));
   real s = select(select(quotient(sum, m.w), small, on), small, away);
-  decided(best, q, more.y);
-  decided(best, select(number(1.0), mul(h, sum), atLeast(q, number(0.0))), more.z);
-  decided(best, select(number(1.0), A, away || on), more.w);
-  decided(best, B, record(row + 4u).x);
+  decided(best, mul(q, more.y));
+  decided(best, mul(select(settled(), mul(h, sum), atLeast(q, number(0.0))), more.z));
+  decided(best, mul(select(settled(), A, away || on), more.w));
+  decided(best, mul(B, record(row + 4u).x));
   // -n.d = sign s h / |G|; on the surface and entering, the ray leaves again, so the sign turns.
   gx = add(gx, mul(s, w.x));
   gy = add(gy, mul(s, w.y));

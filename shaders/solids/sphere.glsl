@@ -3,13 +3,13 @@
 // eye    f = o - c, C = |f|^2 - r^2 (exact on the host, where subtracting them costs digits), b = f.d:
 //        C s^2 + 2 b s + |d|^2 = 0, q = b^2 - |d|^2 C, s = (sqrt q - b) / |C|; the host negates f when the eye is
 //        inside (C < 0), and the wanted root is always the larger. q < 0 gives NaN, which loses every comparison.
-//        Everything is scaled by a power of two to C of about 1; kappa undoes it. An eye very near the surface
+//        Everything is scaled so that the bound of q's error is the shader's DOUBT; kappa undoes it. An eye very near the surface
 //        (|C| << |f|^2, where the numerator cancels) is given to the quadric's careful form by the host.
 //        Rounding: |q^ - q| <= 32u |d|^2 (|f|^2 + |C|); s keeps 2^-28 where q >= 64u^2 2^56 |d|^2 |f|^2.
 // free   the same from c and r, with the cancelling numerator avoided: from inside t > 0 needs care on one side only.
 // naive  a t^2 + 2 b t + c = 0 by the schoolbook formula.
 // The cosine falls out of the test: n.d = -+ sqrt(q)/r.
-// eye record    (f, C) (kappa, k, index, weight of q)   cosine = k sqrt q
+// eye record    (f, C) (kappa, k, index, -)   cosine = k sqrt q
 // world record  (c, r) (index, -, -, -)
 #ifndef SOLIDCAST_SPHERE
 #define SOLIDCAST_SPHERE
@@ -22,7 +22,7 @@ void sphere_eye(uint row, EyeRay ray, inout Best best) {
   real q = sub(mul(b, b), mul(ray.squared, f.w));
   real h = root(q);
   real s = mul(more.x, sub(h, b));
-  decided(best, q, more.w);
+  decided(best, q);
   offer(best, true, s, mul(h, more.y), more.z);
 }
 

@@ -3,12 +3,13 @@
 // eye    s = m.d as for the plane. With P = v1 + beta e1 + gamma e2, u = beta s = U.d and v = gamma s = V.d are linear:
 //        f = v1 - o, num = n.f, U = [num (e2 x n) - ((f x e2).n) n] / (|n|^2 num),
 //                               V = [num (n x e1) - ((e1 x f).n) n] / (|n|^2 num).
-//        Hit where u >= 0, v >= 0, s - u - v >= 0: no division, and the sign of the determinant is gone (s > 0 fixes it).
+//        Hit where u >= 0, v >= 0, w = s - u - v >= 0: no division, and the sign of the determinant is gone (s > 0
+//        fixes it). Only these signs count, so each of U, V, W = m - U - V is scaled to unit length.
 //        Slivers and far offsets cost nothing: the cancelling cross products are the host's, in binary128.
-//        Rounding of each form: <= 7u |U||d| and the like; the weight covers the three of them.
+//        Rounding of each form: <= 7u |d|.
 // free   Moeller-Trumbore without divisions before the tests.
 // naive  Moeller-Trumbore as published.
-// eye record    (m, k) (U, index) (V, weight of s) (weight of the edge tests, -, -, -)
+// eye record    (m, k) (U, index) (V, weight of s) (W, -)
 // world record  (v1, index) (e1, -) (e2, -) (n/|n|, -)
 #ifndef SOLIDCAST_TRIANGLE
 #define SOLIDCAST_TRIANGLE
@@ -16,16 +17,16 @@
 
 void triangle_eye(uint row, EyeRay ray, inout Best best) {
   real4 m = record(row);
-  real4 u4 = record(row + 1u);
-  real4 v4 = record(row + 2u);
+  real4 a = record(row + 1u);
+  real4 b = record(row + 2u);
+  real4 c = record(row + 3u);
   real s = linear(real3(m.x, m.y, m.z), ray.direction);
-  real u = linear(real3(u4.x, u4.y, u4.z), ray.direction);
-  real v = linear(real3(v4.x, v4.y, v4.z), ray.direction);
-  real inside = smaller(smaller(u, v), sub(sub(s, u), v));
-  decided(best, inside, record(row + 3u).x);
+  real inside = smaller(smaller(linear(real3(a.x, a.y, a.z), ray.direction), linear(real3(b.x, b.y, b.z), ray.direction)),
+                        linear(real3(c.x, c.y, c.z), ray.direction));
+  decided(best, inside);
   bool hit = atLeast(inside, number(0.0));
-  decided(best, select(number(1.0), s, hit), v4.w);
-  offer(best, hit, s, mul(s, m.w), u4.w);
+  if (GRAZING) decided(best, mul(select(settled(), s, hit), b.w));
+  offer(best, hit, s, mul(s, m.w), a.w);
 }
 
 #if ARITHMETIC != 2

@@ -17,7 +17,7 @@ inline Corners corners(const AABox& box) {
 
 /// A box without thickness on one axis, seen from outside that plane, is a quad whose normal faces the eye. (In the
 /// box's own form every hit would be a tie of the two faces.)
-inline bool packFlat(const Corners& c, const EyeFrame& eye, f128 index, RowWriter& out) {
+inline bool packFlat(const Corners& c, const EyeFrame& eye, f128 index, const EyeWriters& out) {
   V3 size = c.hi - c.lo;
   int flat = size.x == 0 ? 0 : size.y == 0 ? 1 : size.z == 0 ? 2 : -1;
   if (flat < 0) return false;
@@ -26,19 +26,21 @@ inline bool packFlat(const Corners& c, const EyeFrame& eye, f128 index, RowWrite
   if (eye.origin[flat] < c.lo[flat]) std::swap(a, b);
   Span s{c.lo, {}, {}};
   s.e1[a] = size[a], s.e2[b] = size[b];
-  spanForms(s, eye, index, out);
+  spanForms(s, true, eye, index, out);
   return true;
 }
 
 inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const EyeWriters& out) {
   Corners c = corners(box);
-  if (packFlat(c, eye, index, out.quad())) return;
+  if (packFlat(c, eye, index, out)) return;
   RowWriter& rows = out.box();
   V3 up, cap, low1, low2, onFace;
   f128 big = bigNumber(rows.type()), steep = steepNumber(rows.type()), steepest = 0;
+  f128 nearest = -1, farthest = 0;  // plane of a face that can be hit; corner
   bool inside = true;
   for (int i = 0; i < 3; ++i) {
     f128 a = (c.lo[i] - eye.origin[i]) / eye.unit, b = (c.hi[i] - eye.origin[i]) / eye.unit;
+    farthest += larger(fabsq(a), fabsq(b));
     onFace[i] = ldexpq(1, 100);
     if (a > 0 || b < 0) {
       inside = false;
@@ -50,9 +52,18 @@ inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const Eye
       low2[i] = b == 0 ? steep : 1 / b;
       if (a == 0 || b == 0) onFace[i] = 1;
     }
+    f128 plane = smaller(fabsq(a), fabsq(b));
+    if ((a > 0 || b < 0) && (nearest < 0 || plane < nearest)) nearest = plane;
     for (f128 v : {up[i], low1[i], low2[i]})
       if (fabsq(v) != steep) steepest = larger(steepest, fabsq(v));
   }
+  if (inside)
+    for (int i = 0; i < 3; ++i)
+      for (f128 v : {c.lo[i], c.hi[i]}) {
+        f128 plane = fabsq(v - eye.origin[i]) / eye.unit;
+        if (nearest < 0 || plane < nearest) nearest = plane;
+      }
+  out.mayGraze(nearest, farthest);
   rows.row(up, index);
   rows.row(cap, inside ? 1 : 0);
   rows.row(low1, steepest > 0 ? 1 / steepest : 1);

@@ -4,22 +4,18 @@
 
 namespace solidcast {
 
-/// Rows (m, k) (U, index) (V, weight of s) (weight of the inside test, -, -, -); U and V in world axes.
-inline void planarForms(V3 n, f128 num, V3 U, V3 V, f128 insideScale, const EyeFrame& eye, f128 index, RowWriter& out) {
-  V3 m = eye.toCamera(n) / num;
-  out.row(m, -num / length(n));
-  out.row(eye.toCamera(U), index);
-  out.row(eye.toCamera(V), ldexpq(1, -26) / length(m));
-  out.row(1 / insideScale, 0, 0, 0);
-}
-
 inline void packEye(const Disc& disc, const EyeFrame& eye, f128 index, const EyeWriters& out) {
   V3 n = normalized(V3(disc.normal)), f = eye.relative(disc.center);
   f128 r = disc.radius / eye.unit, num = dot(n, f);
   if (num == 0) return;
   V3 e1 = orthogonal(n), e2 = cross(n, e1);
   V3 U = (num * e1 - dot(f, e1) * n) / (r * num), V = (num * e2 - dot(f, e2) * n) / (r * num), m = n / num;
-  planarForms(n, num, U, V, dot(m, m) + dot(U, U) + dot(V, V), eye, index, out.disc());
+  RowWriter& rows = out.disc();
+  rows.row(eye.toCamera(m), -num);
+  rows.row(eye.toCamera(U), index);
+  rows.row(eye.toCamera(V), ldexpq(1, -26) / length(m));
+  rows.row(1 / (dot(m, m) + dot(U, U) + dot(V, V)), 0, 0, 0);
+  out.mayGraze(num, length(f) + r);
 }
 
 inline void packWorld(const Disc& disc, V3 origin, f128 index, RowWriter& out) {

@@ -71,6 +71,13 @@ struct EyeFrame {
 /// on it is cast as a quadric), one that holds the eye in its plane needs none.
 struct EyeWriters {
   RowWriter* writers;
+  bool* grazing;  // set where hit.glsl's GRAZING is needed
+
+  /// A flat solid whose plane passes the eye at `distance` and whose farthest point is at `farthest`: the cosine is at
+  /// least their ratio, and s keeps 2^-28 relative where 7u <= 2^-28 of it.
+  void mayGraze(f128 distance, f128 farthest) const {
+    if (fabsq(distance) < ldexpq(unitRoundoff(type()), 31) * farthest) *grazing = true;
+  }
   RowWriter& plane() const { return writers[0]; }
   RowWriter& sphere() const { return writers[1]; }
   RowWriter& box() const { return writers[2]; }

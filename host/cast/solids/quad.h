@@ -7,7 +7,7 @@ namespace solidcast {
 inline Span span(const Quad& q) { return {V3(q.vertex), V3(q.span1), V3(q.span2)}; }
 
 inline void packEye(const Quad& quad, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  spanForms(span(quad), eye, index, out.quad());
+  spanForms(span(quad), true, eye, index, out);
 }
 
 inline void packWorld(const Quad& quad, V3 origin, f128 index, RowWriter& out) {

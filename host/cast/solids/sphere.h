@@ -14,13 +14,12 @@ inline void packEye(const Sphere& sphere, const EyeFrame& eye, f128 index, const
     quadricForms({1, 1, 1, 0, 0, 0}, f, C, eye, index, out.quadric(), false);
     return;
   }
-  f128 sigma = 1 / powerOfTwo(sqrtq(fabsq(C)));
+  // In this unit of length the error of q is bounded by DOUBT |d|^2: its scale is 1.
   f128 u = unitRoundoff(out.type());
-  V3 g = eye.toCamera(C < 0 ? -f : f) * sigma;
+  f128 sigma = 1 / sqrtq(larger(1, ldexpq(u, 57)) * (far + fabsq(C)));
   C = C * sigma * sigma;
-  out.sphere().row(g, C);
-  out.sphere().row(sigma / fabsq(C), (C < 0 ? -1 : 1) / (sigma * r), index,
-                   1 / (larger(1, ldexpq(u, 57)) * (dot(g, g) + fabsq(C))));
+  out.sphere().row(eye.toCamera(C < 0 ? -f : f) * sigma, C);
+  out.sphere().row(sigma / fabsq(C), (C < 0 ? -1 : 1) / (sigma * r), index, 0);
 }
 
 inline void packWorld(const Sphere& sphere, V3 origin, f128 index, RowWriter& out) {

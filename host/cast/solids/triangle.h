@@ -11,14 +11,27 @@ struct Span {
 
 inline Span span(const Triangle& t) { return {V3(t.v1), V3(t.v2) - V3(t.v1), V3(t.v3) - V3(t.v1)}; }
 
-inline void spanForms(const Span& s, const EyeFrame& eye, f128 index, RowWriter& out) {
+/// Rows (m, k) (U, index) (V, weight of s), and (m - U - V, -) for a triangle, (m - U, -) (m - V, -) for a quad.
+inline void spanForms(const Span& s, bool quad, const EyeFrame& eye, f128 index, const EyeWriters& out) {
   V3 f = (s.v1 - eye.origin) / eye.unit, e1 = s.e1 / eye.unit, e2 = s.e2 / eye.unit;
   V3 n = cross(e1, e2);
   f128 num = dot(n, f), n2 = dot(n, n);
   if (num == 0) return;  // the eye is in its plane
+  V3 m = n / num;
   V3 U = (num * cross(e2, n) - dot(cross(f, e2), n) * n) / (n2 * num);
   V3 V = (num * cross(n, e1) - dot(cross(e1, f), n) * n) / (n2 * num);
-  planarForms(n, num, U, V, length(n / num) + length(U) + length(V), eye, index, out);
+  RowWriter& rows = quad ? out.quad() : out.triangle();
+  auto edge = [&](V3 form) { return eye.toCamera(normalized(form)); };
+  rows.row(eye.toCamera(m), -num / length(n));
+  rows.row(edge(U), index);
+  rows.row(edge(V), ldexpq(1, -26) / length(m));
+  if (quad) {
+    rows.row(edge(m - U), 0);
+    rows.row(edge(m - V), 0);
+  } else {
+    rows.row(edge(m - U - V), 0);
+  }
+  out.mayGraze(num / length(n), length(f) + length(e1) + length(e2));
 }
 
 inline void spanWorld(const Span& s, V3 origin, f128 index, RowWriter& out) {
@@ -50,7 +63,7 @@ inline SpanCut cutSpan(const Span& s, const RayQ& ray) {
 }
 
 inline void packEye(const Triangle& triangle, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  spanForms(span(triangle), eye, index, out.triangle());
+  spanForms(span(triangle), false, eye, index, out);
 }
 
 inline void packWorld(const Triangle& triangle, V3 origin, f128 index, RowWriter& out) {
