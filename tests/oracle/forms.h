@@ -46,7 +46,7 @@ inline Claim sameSign(const Sign& a, const Sign& b) {
 inline Claim within(const Sign& a, const Sign& b) {
   if (a.is == 0) return {Claim::yes, 0, true};
   if (!a.certain() || !b.certain()) return {};
-  return {a.is * b.is >= 0 ? Claim::yes : Claim::no, a.margin};
+  return {a.is == b.is ? Claim::yes : Claim::no, a.margin};
 }
 
 template <class N>
