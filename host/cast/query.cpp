@@ -113,7 +113,7 @@ struct QueryCaster::Impl {
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const HitRow& h = found[i];
         hits[i] = {};
-        if (h.index < 0) continue;
+        if (h.index < 0 || !std::isfinite(h.t)) continue;
         hits[i].index = h.index;
         hits[i].t = h.t;
         std::memcpy(hits[i].normal.data(), h.normal, sizeof h.normal);
@@ -130,7 +130,8 @@ struct QueryCaster::Impl {
     ExactHit hit;
     if (index >= 0) hit = second->castAt(ray, index);
     if (!hit) hit = std::isinf(given.tMax) ? second->cast(ray) : second->cast(ray, f128(given.tMax));
-    if (!hit) return {};
+    // Beyond fp32's largest number lies the far limit of a query.
+    if (!hit || std::isinf(static_cast<float>(hit.t))) return {};
     Surface s = second->surface(ray, hit);
     V3 p = ray.origin + hit.t * ray.direction;
     QueryHit out;
