@@ -56,18 +56,6 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-/// Distance of a solid's defining point from the eye: the scale of its coordinates.
-f128 scaleOf(const Shape& shape, V3 eye) {
-  return std::visit(
-      Overloaded{[&](const InfinitePlane& s) { return length(V3(s.origin) - eye); },
-                 [&](const AABox& s) { return length((V3(s.corner1) + V3(s.corner2)) / 2 - eye); },
-                 [&](const Sphere& s) { return length(V3(s.center) - eye); },
-                 [&](const Disc& s) { return length(V3(s.center) - eye); },
-                 [&](const Triangle& s) { return length(V3(s.v1) - eye); },
-                 [&](const Quad& s) { return length(V3(s.vertex) - eye); }, [&](const Quadric&) { return f128(0); }},
-      shape);
-}
-
 /// From one sample to the next, across and down: on the plane at distance 1, in the world, or in radians.
 std::pair<f128, f128> steps(const Camera& camera, std::int64_t columns, std::int64_t rows) {
   return std::visit(
@@ -141,7 +129,7 @@ EyeFrame eyeFrame(const Scene& scene, RealType type) {
   if (type == RealType::f64) return eye;
   std::vector<double> scales;
   for (const SolidEntry& solid : scene.world.solids) {
-    f128 scale = scaleOf(solid.shape, eye.origin);
+    f128 scale = std::visit([&](const auto& s) { return length(V3(ball(s).center) - eye.origin); }, solid.shape);
     if (scale > 0) scales.push_back(static_cast<double>(scale));
   }
   if (scales.empty()) return eye;

@@ -8,42 +8,14 @@
 #include "host/cast/solids/all.h"
 
 namespace solidcast {
-namespace {
-
-double distance(const Triple& a, const Triple& b) {
-  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
-}
-Triple between(const Triple& a, const Triple& b) {
-  return {a[0] / 2 + b[0] / 2, a[1] / 2 + b[1] / 2, a[2] / 2 + b[2] / 2};
-}
-Triple sum(const Triple& a, const Triple& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
-struct Bound {
-  Triple center;
-  double radius;
-};
-Bound bound(const InfinitePlane& s) { return {s.origin, -1}; }
-Bound bound(const Quadric&) { return {{0, 0, 0}, -1}; }
-Bound bound(const Sphere& s) { return {s.center, s.radius}; }
-Bound bound(const Disc& s) { return {s.center, s.radius}; }
-Bound bound(const AABox& s) { return {between(s.corner1, s.corner2), distance(s.corner1, s.corner2)}; }
-Bound bound(const Triangle& s) { return {s.v1, std::max(distance(s.v1, s.v2), distance(s.v1, s.v3))}; }
-Bound bound(const Quad& s) {
-  Triple far = sum(s.vertex, sum(s.span1, s.span2));
-  Triple a = sum(s.vertex, s.span1), b = sum(s.vertex, s.span2);
-  return {s.vertex, std::max({distance(s.vertex, far), distance(s.vertex, a), distance(s.vertex, b)})};
-}
-
-}  // namespace
-
 SecondPass::SecondPass(const World& world) : world_(world) {
   balls_.reserve(world.solids.size());
   for (const SolidEntry& solid : world.solids) {
-    Bound b = std::visit([](const auto& s) { return bound(s); }, solid.shape);
+    Ball b = std::visit([](const auto& s) { return ball(s); }, solid.shape);
     double size = std::abs(b.center[0]) + std::abs(b.center[1]) + std::abs(b.center[2]);
-    // 2^-40 of all sizes: far above fp64's rounding of the bound itself.
-    balls_.push_back({{b.center[0], b.center[1], b.center[2]},
-                      b.radius < 0 || !std::isfinite(b.radius) ? -1 : b.radius + std::ldexp(b.radius + size, -40)});
+    // 2^-40 of all sizes: far above fp64's rounding of the ball itself.
+    b.radius = b.radius < 0 || !std::isfinite(b.radius) ? -1 : b.radius + std::ldexp(b.radius + size, -40);
+    balls_.push_back(b);
   }
 }
 
@@ -58,7 +30,7 @@ ExactHit SecondPass::cast(const RayQ& ray, std::optional<f128> tMax) const {
     if (ball.radius >= 0) {  // the ray passes the ball by: |f|^2 - (f.d)^2 > r^2, with fp64's rounding granted
       double f[3], along = 0, square = 0;
       for (int k = 0; k < 3; ++k) {
-        f[k] = ball.center[k] - o[k];
+        f[k] = ball.center[static_cast<std::size_t>(k)] - o[k];
         along += f[k] * d[k];
         square += f[k] * f[k];
       }

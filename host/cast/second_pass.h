@@ -31,11 +31,8 @@ class SecondPass {
   Surface surface(const RayQ& ray, const ExactHit& hit) const;
 
  private:
-  struct Ball {  // holds the solid, in fp64 and generously; radius < 0: no bound
-    double center[3], radius;
-  };
   const World& world_;
-  std::vector<Ball> balls_;
+  std::vector<Ball> balls_;  // a ray that passes one by need not be tried
 };
 
 /// Runs f(i) for 0 <= i < n on all cores; small n on this thread alone.

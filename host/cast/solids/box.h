@@ -85,6 +85,8 @@ inline void packWorld(const AABox& box, V3 origin, f128 index, RowWriter& out) {
   out.row(c.hi - origin, 0);
 }
 
+inline Ball ball(const AABox& box) { return {box.corner1, distance(box.corner1, box.corner2)}; }
+
 inline Cut cut(const AABox& box, const RayQ& ray) {
   Corners c = corners(box);
   f128 enter = -1, leave = -1;

@@ -23,6 +23,8 @@ inline void packWorld(const Disc& disc, V3 origin, f128 index, RowWriter& out) {
   out.row(normalized(V3(disc.normal)), disc.radius);
 }
 
+inline Ball ball(const Disc& disc) { return {disc.center, disc.radius}; }
+
 inline Cut cut(const Disc& disc, const RayQ& ray) {
   V3 n(disc.normal), c(disc.center);
   Cut plane = cutPlane(n, c, ray);

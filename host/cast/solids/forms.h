@@ -78,13 +78,10 @@ struct EyeWriters {
   void mayGraze(f128 distance, f128 farthest) const {
     if (fabsq(distance) < ldexpq(unitRoundoff(type()), 31) * farthest) *grazing = true;
   }
-  RowWriter& plane() const { return writers[0]; }
-  RowWriter& sphere() const { return writers[1]; }
-  RowWriter& box() const { return writers[2]; }
-  RowWriter& disc() const { return writers[3]; }
-  RowWriter& triangle() const { return writers[4]; }
-  RowWriter& quad() const { return writers[5]; }
-  RowWriter& quadric() const { return writers[6]; }
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) \
+  RowWriter& kind() const { return writers[NUMBER]; }
+#include "shaders/solids.def"
+#undef SOLID
   RealType type() const { return writers[0].type(); }
 };
 
@@ -105,5 +102,12 @@ inline f128 slack() { return ldexpq(1, -100); }
 struct Surface {
   V3 normal, local;
 };
+
+/// A ball that holds the solid, in fp64; radius < 0: unbounded. Its centre says where the solid's coordinates lie.
+struct Ball {
+  Triple center;
+  double radius;
+};
+inline double distance(const Triple& a, const Triple& b) { return static_cast<double>(length(V3(a) - V3(b))); }
 
 }  // namespace solidcast

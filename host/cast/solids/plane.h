@@ -33,6 +33,8 @@ inline Cut cutPlane(V3 n, V3 p, const RayQ& ray) {
   return {t > 0, t};
 }
 
+inline Ball ball(const InfinitePlane& plane) { return {plane.origin, -1}; }
+
 inline Cut cut(const InfinitePlane& plane, const RayQ& ray) {
   return cutPlane(V3(plane.normal), V3(plane.origin), ray);
 }

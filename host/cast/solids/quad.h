@@ -14,6 +14,11 @@ inline void packWorld(const Quad& quad, V3 origin, f128 index, RowWriter& out) {
   spanWorld(span(quad), origin, index, out);
 }
 
+inline Ball ball(const Quad& quad) {
+  const Triple zero{0, 0, 0};
+  return {quad.vertex, distance(quad.span1, zero) + distance(quad.span2, zero)};
+}
+
 inline Cut cut(const Quad& quad, const RayQ& ray) {
   SpanCut c = cutSpan(span(quad), ray);
   bool inside = c.beta >= -c.doubt && c.gamma >= -c.doubt && c.beta <= 1 + c.doubt && c.gamma <= 1 + c.doubt;

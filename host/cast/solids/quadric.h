@@ -100,6 +100,8 @@ inline Cut cutQuadric(const Symmetric& M, V3 l, f128 j, const RayQ& ray) {
   return smallestRoot(A, B, C, size * dot(d, d), slope * length(d), (slope + length(l)) * reach + fabsq(j));
 }
 
+inline Ball ball(const Quadric&) { return {{0, 0, 0}, -1}; }
+
 inline Cut cut(const Quadric& quadric, const RayQ& ray) {
   QuadricForm Q = quadricForm(quadric);
   return cutQuadric(Q.M, Q.l, Q.j, ray);

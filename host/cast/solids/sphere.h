@@ -27,6 +27,8 @@ inline void packWorld(const Sphere& sphere, V3 origin, f128 index, RowWriter& ou
   out.row(index, 0, 0, 0);
 }
 
+inline Ball ball(const Sphere& sphere) { return {sphere.center, sphere.radius}; }
+
 inline Cut cut(const Sphere& sphere, const RayQ& ray) {
   V3 f = ray.origin - V3(sphere.center), d = ray.direction;
   f128 r = sphere.radius, far = dot(f, f);

@@ -1,5 +1,7 @@
 // Triangle on the GPU's side; the mathematics is told in shaders/solids/triangle.glsl. The quad shares its forms.
 #pragma once
+#include <algorithm>
+
 #include "host/cast/solids/disc.h"
 
 namespace solidcast {
@@ -69,6 +71,8 @@ inline void packEye(const Triangle& triangle, const EyeFrame& eye, f128 index, c
 inline void packWorld(const Triangle& triangle, V3 origin, f128 index, RowWriter& out) {
   spanWorld(span(triangle), origin, index, out);
 }
+
+inline Ball ball(const Triangle& t) { return {t.v1, std::max(distance(t.v1, t.v2), distance(t.v1, t.v3))}; }
 
 inline Cut cut(const Triangle& triangle, const RayQ& ray) {
   SpanCut c = cutSpan(span(triangle), ray);
