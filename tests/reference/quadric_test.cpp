@@ -77,6 +77,17 @@ TEST(Quadric, PairsOfPlanes) {
   EXPECT_EQ(hit.normal(), (V{0, 0, 1}));
 }
 
+TEST(Quadric, WithoutAGradientTheNormalPointsBackDespiteRounding) {
+  // A double plane hit where t and the hit point are rounded: what is left of the gradient there is noise.
+  const Quadric<__float128> doublePlane({0, 0, 1, 0, 0, 0, 0, 0, -2, 1});
+  for (double z : {6.1, 7.3, 2.9, 11.7}) {
+    const Vec<__float128> d{0.1, 0.2, -0.7};
+    const auto hit = doublePlane.intersect({{0.3, 0.7, z}, d}, infinity<__float128>());
+    ASSERT_TRUE(hit) << z;
+    EXPECT_LT(double(length(hit.normal() + normalized(d))), 1e-30) << z;
+  }
+}
+
 TEST(Quadric, TheNearerSheetOfAHyperboloid) {
   const QuadricCoefficients twoSheets{1, 1, -1, 0, 0, 0, 0, 0, 0, 1};  // z^2 = 1 + x^2 + y^2
   EXPECT_EQ(distance<double>(twoSheets, {0, 0, 5}, {0, 0, -1}), 4);

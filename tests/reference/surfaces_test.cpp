@@ -131,6 +131,14 @@ TEST(Bounds, OfQuadrics) {
     EXPECT_TRUE(bounds.isUnbounded());
     EXPECT_TRUE(bounds.contains({1e30, -1e30, 1e30}));
   }
+  // (x + 2y + 4z)^2 + (3x + y - z)^2 = 1 is a cylinder, whatever it is multiplied with: its determinant is all rounding.
+  for (double factor :
+       {0x1.23456789abdp0, 0x1.fedcba98765p-3, 0x1.0f1e2d3c4b5p7, 0x1.89abcdef013p0, 0x1.7e151628aedp1}) {
+    QuadricCoefficients cylinder{10, 5, 17, 10, 2, 14, 0, 0, 0, -1};
+    for (double& value : cylinder) value *= factor;
+    EXPECT_TRUE(Quadric<double>(cylinder).getBounds().isUnbounded()) << factor;
+    EXPECT_EQ(Quadric<double>(cylinder).getArea(), infinity<double>()) << factor;
+  }
   const BBox<double> point = Quadric<double>({1, 1, 1, 0, 0, 0, -2, 0, 0, 1}).getBounds();
   EXPECT_EQ(point.min, (V{1, 0, 0}));
   EXPECT_EQ(point.max, (V{1, 0, 0}));
