@@ -1,8 +1,6 @@
 // Good scenes: what is read is what was written, in the order that decides ties; large and deep files included.
 #include <gtest/gtest.h>
 
-#include <chrono>
-
 #include "host/scene/rules.h"
 #include "tests/scene/scene_text.h"
 
@@ -124,6 +122,12 @@ TEST(Load, DeepNestingIsReadOrRefusedWithTheLimit) {
   }
   EXPECT_TRUE(refusal(std::string(1'000'000, '[')).starts_with("s.json: /: wrong type"));
   EXPECT_TRUE(refusal("{\"a\":" + std::string(1'000'000, '[')).find("nested deeper") != std::string::npos);
+}
+
+TEST(Load, ManyGroupsSideBySideAreNotDeep) {
+  std::string groups = R"({"type": "group", "solids": []})";
+  for (int i = 0; i < 2 * kMaxGroupDepth; ++i) groups += R"(, {"type": "group", "solids": []})";
+  EXPECT_EQ(parse(withSolids(groups)).world.groups.size(), 2 * std::size_t{kMaxGroupDepth} + 2);
 }
 
 TEST(Load, TwoHundredMegabytes) {
