@@ -56,8 +56,9 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-/// From one sample to the next, across and down: on the plane at distance 1, in the world, or in radians.
-std::pair<f128, f128> steps(const Camera& camera, std::int64_t columns, std::int64_t rows) {
+}  // namespace
+
+std::pair<f128, f128> pixelSteps(const Camera& camera, std::int64_t columns, std::int64_t rows) {
   return std::visit(
       Overloaded{[&](const PerspectiveCamera& c) {
                    return std::pair{2 * tanq(radians(c.horizontalAngle) / 2) / columns,
@@ -71,8 +72,6 @@ std::pair<f128, f128> steps(const Camera& camera, std::int64_t columns, std::int
                  }},
       camera);
 }
-
-}  // namespace
 
 const char* kindLabel(int kind) { return kinds[kind].label; }
 int kindNumber(const Shape& shape) {
@@ -142,7 +141,7 @@ EyeFrame eyeFrame(const Scene& scene, RealType type) {
 View viewRows(const Scene& scene, const EyeFrame& eye, int width, int height, int samples, RealType type) {
   RowWriter rows(type), angles(type);
   std::int64_t columns = std::int64_t{width} * samples, lines = std::int64_t{height} * samples;
-  auto [stepX, stepY] = steps(scene.camera, columns, lines);
+  auto [stepX, stepY] = pixelSteps(scene.camera, columns, lines);
   if (std::holds_alternative<EnvironmentCamera>(scene.camera)) {
     for (std::int64_t i = 0; i < columns; ++i) {
       f128 theta = (i + f128(0.5) - f128(columns) / 2) * stepX;
@@ -169,7 +168,7 @@ PixelRays::PixelRays(const Scene& scene, int width, int height, int samples)
       camera_(static_cast<int>(scene.camera.index())),
       columns_(std::int64_t{width} * samples),
       rows_(std::int64_t{height} * samples) {
-  std::tie(stepX_, stepY_) = steps(scene.camera, columns_, rows_);
+  std::tie(stepX_, stepY_) = pixelSteps(scene.camera, columns_, rows_);
 }
 
 RayQ PixelRays::ray(std::int64_t column, std::int64_t row) const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "host/cast/solids/forms.h"
@@ -43,6 +44,10 @@ struct View {
   std::vector<std::byte> angles;
 };
 View viewRows(const Scene& scene, const EyeFrame& eye, int width, int height, int samples, RealType type);
+
+/// From one sample to the next, across and down, on a grid of columns x rows: on the plane at distance 1 (perspective), in
+/// the world (orthographic), or in radians (environment).
+std::pair<f128, f128> pixelSteps(const Camera& camera, std::int64_t columns, std::int64_t rows);
 
 /// The ideal ray of a sample, in binary128: unit direction. (column, row) count in the grid of samples.
 class PixelRays {

@@ -85,6 +85,14 @@ inline void packWorld(const AABox& box, V3 origin, f128 index, RowWriter& out) {
   out.row(c.hi - origin, 0);
 }
 
+inline Outline outline(const AABox& box) {
+  Outline o;
+  for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t k = 0; k < 3; ++k) o.points[i][k] = (i >> k & 1 ? box.corner2 : box.corner1)[k];
+  o.count = 8;
+  return o;
+}
+
 inline Ball ball(const AABox& box) { return {box.corner1, distance(box.corner1, box.corner2)}; }
 
 inline Cut cut(const AABox& box, const RayQ& ray) {

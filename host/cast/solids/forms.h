@@ -1,5 +1,6 @@
 // What every solid's packing and second pass are written with: the eye's frame, the writer of rows, rays in binary128.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -108,6 +109,15 @@ struct Ball {
   Triple center;
   double radius;
 };
+/// Corners whose convex hull holds the solid; none: the ball does.
+struct Outline {
+  std::array<Triple, 8> points{};
+  int count = 0;
+};
+template <class Solid>
+Outline outline(const Solid&) {
+  return {};
+}
 inline double distance(const Triple& a, const Triple& b) { return static_cast<double>(length(V3(a) - V3(b))); }
 
 }  // namespace solidcast

@@ -14,6 +14,14 @@ inline void packWorld(const Quad& quad, V3 origin, f128 index, RowWriter& out) {
   spanWorld(span(quad), origin, index, out);
 }
 
+inline Outline outline(const Quad& q) {
+  Outline o;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < 3; ++k) o.points[i][k] = q.vertex[k] + (i & 1 ? q.span1[k] : 0) + (i & 2 ? q.span2[k] : 0);
+  o.count = 4;
+  return o;
+}
+
 inline Ball ball(const Quad& quad) {
   const Triple zero{0, 0, 0};
   return {quad.vertex, distance(quad.span1, zero) + distance(quad.span2, zero)};

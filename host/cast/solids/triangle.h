@@ -72,6 +72,8 @@ inline void packWorld(const Triangle& triangle, V3 origin, f128 index, RowWriter
   spanWorld(span(triangle), origin, index, out);
 }
 
+inline Outline outline(const Triangle& t) { return {{t.v1, t.v2, t.v3}, 3}; }
+
 inline Ball ball(const Triangle& t) { return {t.v1, std::max(distance(t.v1, t.v2), distance(t.v1, t.v3))}; }
 
 inline Cut cut(const Triangle& triangle, const RayQ& ray) {
