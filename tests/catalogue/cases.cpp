@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tests/oracle/oracle.h"
+#include "host/oracle/oracle.h"
 
 namespace solidcast::catalogue {
 namespace {

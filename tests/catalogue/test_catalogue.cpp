@@ -12,8 +12,8 @@
 #include "host/scene/load.h"
 #include "tests/catalogue/cases.h"
 #include "tests/catalogue/catalogue.h"
-#include "tests/oracle/families.h"
-#include "tests/oracle/oracle.h"
+#include "host/oracle/families.h"
+#include "host/oracle/oracle.h"
 
 namespace solidcast::catalogue {
 namespace {

@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "reference_cpu/reference.h"
-#include "tests/oracle/families.h"
-#include "tests/oracle/oracle.h"
+#include "host/oracle/families.h"
+#include "host/oracle/oracle.h"
 
 namespace solidcast::oracle {
 namespace {

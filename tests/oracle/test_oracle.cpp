@@ -7,10 +7,10 @@
 #include <variant>
 
 #include "reference_cpu/reference.h"
-#include "tests/oracle/families.h"
-#include "tests/oracle/forms.h"
-#include "tests/oracle/oracle.h"
-#include "tests/oracle/random.h"
+#include "host/oracle/families.h"
+#include "host/oracle/forms.h"
+#include "host/oracle/oracle.h"
+#include "host/oracle/random.h"
 
 namespace solidcast::oracle {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/oracle/root.h"
+#include "host/oracle/root.h"
 
 namespace solidcast::oracle {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <variant>
 
-#include "tests/oracle/aims.h"
+#include "host/oracle/aims.h"
 
 namespace solidcast::oracle {
 

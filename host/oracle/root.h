@@ -1,6 +1,6 @@
 // The ray parameter of a hit as an algebraic number, kept unevaluated so that two of them can be compared exactly.
 #pragma once
-#include "tests/oracle/number.h"
+#include "host/oracle/number.h"
 
 namespace solidcast::oracle {
 

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/oracle/dyadic.h"
+#include "host/oracle/dyadic.h"
 
 namespace solidcast::oracle {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <variant>
 
-#include "tests/oracle/oracle.h"
+#include "host/oracle/oracle.h"
 
 namespace solidcast::oracle {
 namespace {

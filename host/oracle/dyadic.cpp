@@ -1,4 +1,4 @@
-#include "tests/oracle/dyadic.h"
+#include "host/oracle/dyadic.h"
 
 #include <quadmath.h>
 

@@ -4,7 +4,7 @@
 // distance relative to the eye).
 #pragma once
 #include "host/scene/world.h"
-#include "tests/oracle/root.h"
+#include "host/oracle/root.h"
 
 namespace solidcast::oracle {
 

@@ -1,10 +1,10 @@
 // The rays of each family.
-#include "tests/oracle/aims.h"
+#include "host/oracle/aims.h"
 
 #include <cmath>
 #include <variant>
 
-#include "tests/oracle/oracle.h"
+#include "host/oracle/oracle.h"
 
 namespace solidcast::oracle {
 

@@ -1,10 +1,10 @@
-#include "tests/oracle/families.h"
+#include "host/oracle/families.h"
 
 #include <algorithm>
 #include <map>
 #include <stdexcept>
 
-#include "tests/oracle/aims.h"
+#include "host/oracle/aims.h"
 
 namespace solidcast::oracle {
 namespace {

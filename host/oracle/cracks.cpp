@@ -1,7 +1,7 @@
 // Rays aimed at the seams of closed meshes.
 #include <cmath>
 
-#include "tests/oracle/aims.h"
+#include "host/oracle/aims.h"
 
 namespace solidcast::oracle {
 

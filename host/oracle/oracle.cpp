@@ -1,10 +1,10 @@
-#include "tests/oracle/oracle.h"
+#include "host/oracle/oracle.h"
 
 #include <algorithm>
 #include <type_traits>
 #include <variant>
 
-#include "tests/oracle/forms.h"
+#include "host/oracle/forms.h"
 
 namespace solidcast::oracle {
 namespace {

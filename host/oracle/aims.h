@@ -1,8 +1,8 @@
 // The solids and the rays that the families are put together from.
 #pragma once
-#include "tests/oracle/families.h"
-#include "tests/oracle/random.h"
-#include "tests/oracle/vectors.h"
+#include "host/oracle/families.h"
+#include "host/oracle/random.h"
+#include "host/oracle/vectors.h"
 
 namespace solidcast::oracle {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <variant>
 
-#include "tests/oracle/aims.h"
+#include "host/oracle/aims.h"
 
 namespace solidcast::oracle {
 namespace {

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <variant>
 
-#include "tests/oracle/families.h"
-#include "tests/oracle/oracle.h"
-#include "tests/oracle/random.h"
-#include "tests/oracle/vectors.h"
+#include "host/oracle/families.h"
+#include "host/oracle/oracle.h"
+#include "host/oracle/random.h"
+#include "host/oracle/vectors.h"
 
 namespace solidcast::oracle {
 namespace {
