@@ -106,17 +106,21 @@ void box_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {
   offerNaive(best, enter <= leave, t, outside ? d : -d, low.w);
 }
 
-// The face nearest to the hit point; at an edge the first axis. Its side follows from the ray: entered or left.
+// The face nearest to the hit point, of those that the ray enters (or, from inside, leaves) by; at an edge the first
+// axis.
 void box_finish(uint row, real3 hit, real3 direction, real cosine, inout real3 normal,
                 inout real3 local) {
   real3 lo = worldRecord(row).xyz, hi = worldRecord(row + 1u).xyz;
-  real3 off = abs(minus3(hit, lo));
-  real3 above = abs(minus3(hi, hit));
-  off = real3(smaller(off.x, above.x), smaller(off.y, above.y), smaller(off.z, above.z));
+  bool entered = cosine >= real(0);
+  real3 off = real3(0);
+  for (int i = 0; i < 3; ++i) {
+    real d = direction[i];
+    off[i] = d == real(0) ? real(BIG) : abs(sub(hit[i], (d > real(0)) == entered ? lo[i] : hi[i]));
+  }
   real nearest = smaller(smaller(off.x, off.y), off.z);
   real3 axis = off.x == nearest ? real3(1, 0, 0) : off.y == nearest ? real3(0, 1, 0) : real3(0, 0, 1);
   bool forwards = dot3(axis, direction) > real(0);
-  normal = forwards == (cosine < real(0)) ? axis : -axis;
+  normal = forwards == entered ? -axis : axis;
 }
 #endif
 #endif

@@ -118,16 +118,17 @@ inline Cut cut(const AABox& box, const RayQ& ray) {
 inline Surface surface(const AABox& box, const RayQ& ray, f128 t) {
   Corners c = corners(box);
   V3 p = ray.origin + t * ray.direction;
+  // Entered from outside: the normal is against the ray; left from inside or from the surface: along it. Faces on the
+  // other side are not asked: a ray that enters at an edge may leave there too.
+  bool entering = false;
+  for (int i = 0; i < 3; ++i) entering = entering || ray.origin[i] < c.lo[i] || ray.origin[i] > c.hi[i];
   int face = -1;
   f128 nearest = 0;
   for (int i = 0; i < 3; ++i) {  // the first axis among equals, as in the search
     if (ray.direction[i] == 0) continue;
-    f128 off = smaller(fabsq(p[i] - c.lo[i]), fabsq(p[i] - c.hi[i]));
+    f128 off = fabsq(p[i] - ((ray.direction[i] > 0) == entering ? c.lo[i] : c.hi[i]));
     if (face < 0 || off < nearest - slack() * (length(p) + length(c.hi - c.lo))) face = i, nearest = off;
   }
-  // Entered from outside: the normal is against the ray; left from inside or from the surface: along it.
-  bool entering = false;
-  for (int i = 0; i < 3; ++i) entering = entering || ray.origin[i] < c.lo[i] || ray.origin[i] > c.hi[i];
   V3 n;
   n[face] = (ray.direction[face] > 0) == entering ? -1 : 1;
   return {n, p};
