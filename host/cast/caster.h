@@ -63,6 +63,12 @@ class QueryCaster {
   QueryCaster(gpu::Device& device, const World& world, const CastOptions& options);
   ~QueryCaster();
   void cast(std::span<const QueryRay> rays, std::span<QueryHit> hits);
+  /// Casts at another world from now on, which must outlive the caster. The pipeline stays if both worlds have as many
+  /// solids of each kind, so that a solid after the other costs next to nothing.
+  void setWorld(const World& world);
+  /// Only the shader, once more over the rays of the last cast() (its last 65536, if there were more): nothing is
+  /// copied in or out. GPU time in ms. For benchmarks.
+  double dispatchOnly();
   const CastStats& stats() const;
 
  private:

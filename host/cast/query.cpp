@@ -34,15 +34,30 @@ V3 vectorOf(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
 struct QueryCaster::Impl {
   gpu::Device& device;
-  const World& world;
+  CastOptions options;
+  const World* world = nullptr;
   Program program;
+  gpu::Specialisation constants;
   std::vector<SearchPortion> search;
   std::optional<gpu::Pipeline> pipeline;
   std::vector<gpu::Buffer> buffers;
   std::optional<SecondPass> second;
+  std::uint32_t lastRays = 0;  // of the last block
   CastStats stats;
 
-  Impl(gpu::Device& d, const World& w, const CastOptions& options) : device(d), world(w) {
+  Impl(gpu::Device& d, const World& w, const CastOptions& o) : device(d), options(o), buffers(8) {
+    std::string why;
+    program.job = Job::rays;
+    program.method = options.method;
+    program.real = chooseReal(device.info(), options, Job::rays, 0, why);
+    program.hits = options.method != Method::exact;
+    stats.plan.push_back(why);
+    buffers[2] = device.makeBuffer(blockRays * sizeof(RayRow), gpu::BufferUse::storage);
+    buffers[3] = device.makeBuffer(blockRays * sizeof(HitRow), gpu::BufferUse::readback);
+    setWorld(w);
+  }
+
+  void setWorld(const World& w) {
     auto start = std::chrono::steady_clock::now();
     auto lap = [&] {
       auto now = std::chrono::steady_clock::now();
@@ -50,36 +65,45 @@ struct QueryCaster::Impl {
       start = now;
       return ms;
     };
-    std::string why;
-    program.job = Job::rays;
-    program.method = options.method;
-    program.real = chooseReal(device.info(), options, Job::rays, 0, why);
-    Records records = worldRecords(world, {}, program.real);
-    program.storage = records.bytes.size() > device.info().limits.maxUniformBufferRange || records.solids() > 4096;
-    program.hits = options.method != Method::exact;
-    search = program.storage ? portions(records) : std::vector<SearchPortion>(1);
-    stats.flatten_ms = lap();
-    gpu::Specialisation constants = recordConstants(program, records, records);
+    world = &w;
+    Records records = worldRecords(w, {}, program.real);
+    const bool storage = records.bytes.size() > device.info().limits.maxUniformBufferRange || records.solids() > 4096;
+    search = storage ? portions(records) : std::vector<SearchPortion>(1);
+    stats.flatten_ms += lap();
+    const bool same = pipeline && storage == program.storage;
+    program.storage = storage;
+    gpu::Specialisation wanted = recordConstants(program, records, records);
     // s to 2^-25 in fp64; in fp32 decisions that 2^-24 can tell, since t comes from the second pass.
-    constants[doubt] = bits(std::ldexp(1.f, program.real == RealType::f64 ? -24 : -9));
-    std::vector<std::uint32_t> spirv = programSpirv(program, options);
-    pipeline.emplace(device.makePipeline(spirv, constants));
-    auto use = program.storage ? gpu::BufferUse::storage : gpu::BufferUse::uniform;
-    buffers.resize(8);
+    wanted[doubt] = bits(std::ldexp(1.f, program.real == RealType::f64 ? -24 : -9));
+    if (!same || wanted != constants) {
+      std::vector<std::uint32_t> spirv = programSpirv(program, options);
+      pipeline.emplace(device.makePipeline(spirv, wanted));
+      stats.spirvBytes = spirv.size() * 4;
+    }
+    constants = wanted;
+    auto use = storage ? gpu::BufferUse::storage : gpu::BufferUse::uniform;
     buffers[1] = filledBuffer(device, records.bytes, use);
-    buffers[2] = device.makeBuffer(blockRays * sizeof(RayRow), gpu::BufferUse::storage);
-    buffers[3] = device.makeBuffer(blockRays * sizeof(HitRow), gpu::BufferUse::readback);
-    if (program.storage)
-      buffers[6] = device.makeBuffer(search.size() > 1 ? blockRays * 48 : 64, gpu::BufferUse::storage);
+    if (storage) buffers[6] = device.makeBuffer(search.size() > 1 ? blockRays * 48 : 64, gpu::BufferUse::storage);
     if (program.hits)
       buffers[7] = filledBuffer(device, std::as_bytes(std::span(records.places)), gpu::BufferUse::storage);
-    stats.shader_ms = lap();
+    stats.shader_ms += lap();
     stats.module = program.moduleName();
-    stats.spirvBytes = spirv.size() * 4;
-    stats.plan.push_back(why);
-    stats.leftOut = leftOutLines(program, world, {});
+    stats.leftOut = leftOutLines(program, w, {});
     stats.deviceBytes = device.peakBytes();
-    if (options.method == Method::exact) second.emplace(world);
+    if (options.method == Method::exact) second.emplace(w);
+  }
+
+  /// The shader over the rays in the buffer; GPU time in ms.
+  double dispatch(std::uint32_t n) {
+    std::vector<const gpu::Buffer*> bound;
+    for (const gpu::Buffer& b : buffers) bound.push_back(b.bytes().empty() ? nullptr : &b);
+    std::vector<RayPush> pushes;
+    for (std::size_t p = 0; p < search.size(); ++p)
+      pushes.push_back({n, (p == 0 ? 1u : 0u) | (p + 1 == search.size() ? 2u : 0u), search[p]});
+    std::vector<gpu::Dispatch> dispatches;
+    for (const RayPush& push : pushes)
+      dispatches.push_back({&*pipeline, bound, std::as_bytes(std::span(&push, 1)), {(n + 63) / 64, 1, 1}});
+    return device.run(dispatches);
   }
 
   void block(std::span<const QueryRay> rays, std::span<QueryHit> hits) {
@@ -88,17 +112,10 @@ struct QueryCaster::Impl {
       const QueryRay& r = rays[i];
       rows[i] = {{r.origin[0], r.origin[1], r.origin[2]}, r.tMax, {r.direction[0], r.direction[1], r.direction[2]}, 0};
     }
-    std::vector<const gpu::Buffer*> bound;
-    for (const gpu::Buffer& b : buffers) bound.push_back(b.bytes().empty() ? nullptr : &b);
     auto n = static_cast<std::uint32_t>(rays.size());
-    std::vector<RayPush> pushes;
-    for (std::size_t p = 0; p < search.size(); ++p)
-      pushes.push_back({n, (p == 0 ? 1u : 0u) | (p + 1 == search.size() ? 2u : 0u), search[p]});
-    std::vector<gpu::Dispatch> dispatches;
-    for (const RayPush& push : pushes)
-      dispatches.push_back({&*pipeline, bound, std::as_bytes(std::span(&push, 1)), {(n + 63) / 64, 1, 1}});
+    lastRays = n;
     auto start = std::chrono::steady_clock::now();
-    double ms = device.run(dispatches);
+    double ms = dispatch(n);
     if (stats.rays == 0)
       stats.first_dispatch_ms =
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -157,6 +174,10 @@ void QueryCaster::cast(std::span<const QueryRay> rays, std::span<QueryHit> hits)
     impl_->block(rays.subspan(first, n), hits.subspan(first, n));
   }
 }
+
+void QueryCaster::setWorld(const World& world) { impl_->setWorld(world); }
+
+double QueryCaster::dispatchOnly() { return impl_->lastRays > 0 ? impl_->dispatch(impl_->lastRays) : 0; }
 
 const CastStats& QueryCaster::stats() const { return impl_->stats; }
 
