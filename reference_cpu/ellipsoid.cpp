@@ -87,7 +87,7 @@ Quadruple carlsonF(Quadruple x, Quadruple y, Quadruple z) {
   for (;;) {
     const Quadruple mean = (x + y + z) / 3;
     const Quadruple X = 1 - x / mean, Y = 1 - y / mean, Z = -X - Y;
-    if (greater(absolute(X), greater(absolute(Y), absolute(Z))) < 1e-6Q) {
+    if (!(greater(absolute(X), greater(absolute(Y), absolute(Z))) >= 1e-6Q)) {
       const Quadruple E2 = X * Y - Z * Z, E3 = X * Y * Z;
       return (1 - E2 / 10 + E3 / 14 + E2 * E2 / 24 - 3 * E2 * E3 / 44) / sqrtq(mean);
     }
@@ -101,7 +101,7 @@ Quadruple carlsonD(Quadruple x, Quadruple y, Quadruple z) {
   for (;;) {
     const Quadruple mean = (x + y + 3 * z) / 5;
     const Quadruple X = 1 - x / mean, Y = 1 - y / mean, Z = -(X + Y) / 3;
-    if (greater(absolute(X), greater(absolute(Y), absolute(Z))) < 1e-6Q) {
+    if (!(greater(absolute(X), greater(absolute(Y), absolute(Z))) >= 1e-6Q)) {
       const Quadruple E2 = X * Y - 6 * Z * Z, E3 = (3 * X * Y - 8 * Z * Z) * Z;
       const Quadruple E4 = 3 * (X * Y - Z * Z) * Z * Z, E5 = X * Y * Z * Z * Z;
       const Quadruple series =
@@ -151,10 +151,13 @@ std::optional<EllipsoidAxes> ellipsoidAxes(const QuadricCoefficients& coefficien
   const Matrix V = diagonalise(form->M);
   std::array<int, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](int i, int k) { return form->M[i][i] < form->M[k][k]; });
+  // No eigenvalue is below determinant / largest^2, whatever the rotations' rounding left of it.
+  const Quadruple largest = form->M[order[2]][order[2]];
+  const Quadruple least = form->determinant / (largest * largest);
   EllipsoidAxes axes;
   axes.center = form->center;
   for (int i = 0; i < 3; ++i) {
-    axes.semiAxes[i] = sqrtq(form->level / form->M[order[i]][order[i]]);
+    axes.semiAxes[i] = sqrtq(form->level / greater(form->M[order[i]][order[i]], least));
     axes.directions[i] = {V[0][order[i]], V[1][order[i]], V[2][order[i]]};
   }
   return axes;

@@ -80,6 +80,11 @@ TEST(Area, Ellipsoids) {
   // A needle of 1e6 : 1 : 1 is a prolate spheroid too; a coin's area tends to twice its disc.
   EXPECT_NEAR(Quadric<double>({1e-12, 1, 1, 0, 0, 0, 0, 0, 0, -1}).getArea() / (M_PI * M_PI * 1e6), 1, 1e-9);
   EXPECT_NEAR(Quadric<double>({1, 1, 1e12, 0, 0, 0, 0, 0, 0, -1}).getArea() / (2 * M_PI), 1, 1e-9);
+  // Barely an ellipsoid: (x + y)^2 + 2^-52 y^2 + z^2 = 1 has the semi-axes 2^26.5, 1 and sqrt(1/2): a needle's area is
+  // pi/2 times its length's half times the girth, here 5.40258.
+  EXPECT_NEAR(
+      Quadric<double>({1, 1 + 0x1p-52, 1, 2, 0, 0, 0, 0, 0, -1}).getArea() / (M_PI / 2 * std::exp2(26.5) * 5.40258), 1,
+      1e-5);
   for (const QuadricCoefficients& endless : {QuadricCoefficients{1, 1, 0, 0, 0, 0, 0, 0, 0, -1},
                                              {1, 1, -1, 0, 0, 0, 0, 0, 0, 0},
                                              {1, 1, 0, 0, 0, 0, 0, 0, -1, 0},
