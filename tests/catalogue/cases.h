@@ -1,6 +1,6 @@
 // How the cases are written down: inputs and allowed outcomes only, the truth is the oracle's business.
 #pragma once
-#include "tests/catalogue/catalogue.h"
+#include "host/catalogue/catalogue.h"
 
 namespace solidcast::catalogue {
 

@@ -11,7 +11,7 @@
 #include "host/error.h"
 #include "host/scene/load.h"
 #include "tests/catalogue/cases.h"
-#include "tests/catalogue/catalogue.h"
+#include "host/catalogue/catalogue.h"
 #include "host/oracle/families.h"
 #include "host/oracle/oracle.h"
 

@@ -1,4 +1,4 @@
-#include "tests/catalogue/catalogue.h"
+#include "host/catalogue/catalogue.h"
 
 #include <quadmath.h>
 
@@ -151,5 +151,7 @@ Catalogue readCatalogue(const std::string& file) {
   if (!in) throw std::runtime_error("catalogue: cannot open " + file);
   return fromJson(Json::parse(in));
 }
+
+Catalogue carriedCatalogue() { return fromJson(Json::parse(carriedText())); }
 
 }  // namespace solidcast::catalogue
