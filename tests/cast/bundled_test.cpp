@@ -1,0 +1,76 @@
+// The bundled scenes by every method against the oracle: decisions flip only where a tilt of 1e-6 rad flips them.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tests/cast/fixture.h"
+
+namespace solidcast {
+namespace {
+
+struct Census {
+  int pixels = 0, flipped = 0, stuck = 0;  // stuck: flipped although no tilted ray is
+  std::vector<double> ulps;                // of t where solid and truth agree
+  double relative = 0;
+  double atPercent(double percent) {
+    if (ulps.empty()) return 0;
+    std::sort(ulps.begin(), ulps.end());
+    return ulps[std::min(ulps.size() - 1, static_cast<std::size_t>(percent / 100 * static_cast<double>(ulps.size())))];
+  }
+};
+
+Census census(gpu::Device& device, const Scene& scene, Method method) {
+  RenderJob job = jobOf(scene, {.distance = true, .solid = true});
+  const Band band = renderWhole(device, scene, job, {.method = method});
+  Census all;
+  for (int y = 0; y < scene.height; ++y)
+    for (int x = 0; x < scene.width; ++x) {
+      const auto i = static_cast<std::size_t>(y * scene.width + x);
+      const oracle::Ray128 ray = oracle::pixelRay(scene.camera, scene.width, scene.height, x + 0.5, y + 0.5);
+      const oracle::WorldTruth truth = oracle::cast(scene.world, ray);
+      ++all.pixels;
+      if (band.solid[i] != truth.index) {
+        ++all.flipped;
+        all.stuck += !oracle::flipsWhenTilted(scene.world, ray, 1e-6);
+      } else if (truth.index >= 0) {
+        all.ulps.push_back(oracle::ulpError(band.distance[i], truth.truth.t));
+        const double t = static_cast<double>(truth.truth.t);
+        all.relative = std::fmax(all.relative, std::abs(band.distance[i] - t) / t);
+      }
+    }
+  return all;
+}
+
+class Bundled : public OnDevice, public testing::WithParamInterface<std::string> {};
+INSTANTIATE_TEST_SUITE_P(, Bundled, testing::ValuesIn(bundledScenes()), [](const auto& info) {
+  std::string name = info.param.substr(0, info.param.size() - 5);
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+});
+
+TEST_P(Bundled, FlipsOnlyWhereATiltFlips) {
+  Scene scene = loaded(GetParam());
+  const bool many = scene.world.solids.size() > 50;
+  scene.width = many ? 64 : 128, scene.height = many ? 48 : 96;
+  for (const Method method : kMethods) {
+    Census c = census(device(), scene, method);
+    SCOPED_TRACE(std::string(nameOf(method)) + ": " + std::to_string(c.flipped) + " flipped, " +
+                 std::to_string(c.stuck) + " stuck, p99 " + std::to_string(c.atPercent(99)) + " ulp, max " +
+                 std::to_string(c.atPercent(100)) + " ulp, relative " + std::to_string(c.relative));
+    RecordProperty(std::string(nameOf(method)) + "_p99_ulps", std::to_string(c.atPercent(99)));
+    RecordProperty(std::string(nameOf(method)) + "_flipped", c.flipped);
+    if (method == Method::exact) {
+      EXPECT_EQ(c.flipped, 0);
+      EXPECT_LE(c.atPercent(100), 1);
+      continue;
+    }
+    // naive is the yardstick: its t is as it is, but these scenes are gentle enough for its decisions.
+    EXPECT_EQ(c.stuck, 0);
+    if (method == Method::naive) continue;
+    EXPECT_LE(c.atPercent(99), 4);
+    EXPECT_LE(c.relative, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace solidcast

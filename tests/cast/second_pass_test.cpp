@@ -1,0 +1,66 @@
+// The guarantee's fallback is seen to run: worlds that force doubt, and the answers after it.
+#include <cmath>
+
+#include "tests/cast/fixture.h"
+
+namespace solidcast {
+namespace {
+
+Scene sceneOf(const std::vector<Shape>& shapes, int width, int height) {
+  Scene scene;
+  scene.width = width;
+  scene.height = height;
+  scene.camera = PerspectiveCamera{{0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, 60};
+  scene.world = worldOf(shapes);
+  return scene;
+}
+
+// The middle column of an odd image looks exactly along the edge that the triangles share; the middle row meets a
+// sphere's silhouette nowhere, so that all doubt is the edge's.
+TEST_F(OnDevice, AnEdgeThroughPixelCentres) {
+  const Scene scene =
+      sceneOf({Triangle{{0, -2, 0}, {2, 0, 0}, {0, 2, 0}}, Triangle{{0, -2, 0}, {0, 2, 0}, {-2, 0, -1}}}, 101, 75);
+  for (const Arithmetic arithmetic : {Arithmetic::fp64, Arithmetic::df32}) {
+    const Tally tally = measureImage(device(), scene, {.arithmetic = arithmetic});
+    EXPECT_TRUE(tally.exact()) << text(tally);
+    EXPECT_GE(tally.doubtful, 50u);
+    if (arithmetic == Arithmetic::fp64) { EXPECT_LE(tally.doubtful, 150u) << "only the column"; }
+  }
+}
+
+// All hits are ties: more doubt than the list has room for, so the band runs once more.
+TEST_F(OnDevice, CoincidentSolidsOverflowTheListOfDoubts) {
+  const InfinitePlane wall{{0, 0, -1}, {0.125, 0.25, 1}};
+  const Scene scene = sceneOf({wall, Sphere{{0, 0, 0}, 1}, wall, Sphere{{0, 0, 0}, 1}}, 121, 97);
+  const Tally tally = measureImage(device(), scene, {});
+  EXPECT_TRUE(tally.exact()) << text(tally);
+  EXPECT_GE(tally.doubtful, 121u * 97 * 9 / 10);
+}
+
+// Radiance of doubtful pixels comes from the host: it must be what the shader says beside it.
+TEST_F(OnDevice, TheHostShadesAsTheShaderDoes) {
+  const Shape floor = Quad{{-4, -1, 4}, {8, 0, 0}, {0, 0.5, -9}};
+  const Shape ball = Sphere{{0.3, 0.2, 0}, 1};
+  Scene once = sceneOf({floor, ball}, 90, 70), twice = sceneOf({floor, ball, floor, ball}, 90, 70);
+  const RayCastingDistIntegrator dist{{1, 0.2, 0}, 3, {0.2, 1, 0}, 7};
+  for (const Integrator& integrator : {Integrator{RayCastingIntegrator{}}, Integrator{dist}}) {
+    once.integrator = twice.integrator = integrator;
+    for (const int samples : {1, 2}) {
+      RenderJob job = jobOf(once, {.rgb8 = true, .radiance = true, .distance = true, .solid = true});
+      job.samples = samples;
+      CastStats clear, doubtful;
+      const Band a = renderWhole(device(), once, job, {}, &clear), b = renderWhole(device(), twice, job, {}, &doubtful);
+      EXPECT_LT(clear.fallbackRays, 100u);
+      EXPECT_GT(doubtful.fallbackRays, 3000u);
+      EXPECT_EQ(a.solid, b.solid) << "the first of two equal solids wins";
+      EXPECT_EQ(a.distance, b.distance);
+      float worst = 0;
+      for (std::size_t i = 0; i < a.radiance.size(); ++i)
+        worst = std::fmax(worst, std::abs(a.radiance[i] - b.radiance[i]));
+      EXPECT_LT(worst, 4e-7f);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace solidcast
