@@ -143,7 +143,7 @@ struct QueryCaster::Impl {
 
   QueryHit exactHit(const QueryRay& given, std::int32_t index) const {
     if (index == -1) return {};
-    RayQ ray{vectorOf(given.origin), vectorOf(given.direction)};
+    RayQ ray{vectorOf(given.origin), vectorOf(given.direction), true};
     ExactHit hit;
     if (index >= 0) hit = second->castAt(ray, index);
     if (!hit) hit = std::isinf(given.tMax) ? second->cast(ray) : second->cast(ray, f128(given.tMax));

@@ -5,9 +5,19 @@
 #include <cmath>
 #include <thread>
 
+#include "host/cast/rational_pass.h"
 #include "host/cast/solids/all.h"
 
 namespace solidcast {
+namespace {
+
+Cut cutOf(const Shape& shape, const RayQ& ray) {
+  Cut c = std::visit([&](const auto& s) { return cut(s, ray); }, shape);
+  return c.close && ray.rational ? rationalCut(shape, ray) : c;
+}
+
+}  // namespace
+
 SecondPass::SecondPass(const World& world) : world_(world) {
   balls_.reserve(world.solids.size());
   for (const SolidEntry& solid : world.solids) {
@@ -36,15 +46,27 @@ ExactHit SecondPass::cast(const RayQ& ray, std::optional<f128> tMax) const {
       }
       if (square - along * along > ball.radius * ball.radius + 1e-12 * square) continue;
     }
-    Cut c = std::visit([&](const auto& s) { return cut(s, ray); }, world_.solids[i].shape);
-    if (!c.hit || (tMax && c.t >= *tMax)) continue;
-    if (!best || c.t < best.t - slack() * best.t) best = {static_cast<std::int32_t>(i), c.t};
+    const Shape& shape = world_.solids[i].shape;
+    Cut c = cutOf(shape, ray);
+    if (!c.hit) continue;
+    // Near the limit or the best so far, a free ray has rationals to tell; else they count as equal.
+    if (tMax) {
+      bool open = ray.rational && fabsq(c.t - *tMax) <= slack() * *tMax;
+      if (open ? rationalOrder(shape, static_cast<double>(*tMax), ray) >= 0 : c.t >= *tMax) continue;
+    }
+    if (best && fabsq(c.t - best.t) <= slack() * best.t) {
+      const Shape& other = world_.solids[static_cast<std::size_t>(best.index)].shape;
+      if (!ray.rational || rationalOrder(shape, other, ray) >= 0) continue;
+    } else if (best && c.t > best.t) {
+      continue;
+    }
+    best = {static_cast<std::int32_t>(i), c.t};
   }
   return best;
 }
 
 ExactHit SecondPass::castAt(const RayQ& ray, std::int32_t index) const {
-  Cut c = std::visit([&](const auto& s) { return cut(s, ray); }, world_.solids[static_cast<std::size_t>(index)].shape);
+  Cut c = cutOf(world_.solids[static_cast<std::size_t>(index)].shape, ray);
   return c.hit ? ExactHit{index, c.t} : ExactHit{};
 }
 

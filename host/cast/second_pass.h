@@ -22,7 +22,8 @@ class SecondPass {
  public:
   explicit SecondPass(const World& world);
 
-  /// Nearest hit with 0 < t < tMax; at equal t (within binary128's rounding) the earlier solid.
+  /// Nearest hit with 0 < t < tMax; at equal t (exactly for rational rays, within binary128's rounding for others) the
+  /// earlier solid.
   ExactHit cast(const RayQ& ray, std::optional<f128> tMax = std::nullopt) const;
 
   /// t of a ray known to hit solid `index`; an empty hit if binary128 disagrees.

@@ -2,6 +2,7 @@
 #pragma once
 #include <utility>
 
+#include "host/cast/rational_pass.h"
 #include "host/cast/solids/quad.h"
 
 namespace solidcast {
@@ -101,7 +102,7 @@ inline Cut cut(const AABox& box, const RayQ& ray) {
   bool bounded = false, entered = false;
   for (int i = 0; i < 3; ++i) {
     f128 a = c.lo[i] - ray.origin[i], b = c.hi[i] - ray.origin[i], d = ray.direction[i];
-    if (fabsq(d) <= slack() * length(ray.direction) || d == 0) {
+    if (d == 0 || (!ray.rational && fabsq(d) <= slack() * length(ray.direction))) {
       if (a > 0 || b < 0) return {};
       continue;
     }
@@ -110,9 +111,9 @@ inline Cut cut(const AABox& box, const RayQ& ray) {
     leave = bounded ? smaller(leave, second) : second;
     entered = bounded = true;
   }
-  if (!bounded || enter > leave + slack() * fabsq(leave)) return {};
-  f128 t = enter > 0 ? enter : leave;
-  return {t > 0, t};
+  if (!bounded) return {};
+  f128 beyond = enter - leave, doubt = slack() * fabsq(leave), t = enter > 0 ? enter : leave;
+  return {beyond <= doubt && t > 0, t, fabsq(beyond) <= doubt};
 }
 
 inline Surface surface(const AABox& box, const RayQ& ray, f128 t) {
@@ -123,12 +124,15 @@ inline Surface surface(const AABox& box, const RayQ& ray, f128 t) {
   bool entering = false;
   for (int i = 0; i < 3; ++i) entering = entering || ray.origin[i] < c.lo[i] || ray.origin[i] > c.hi[i];
   int face = -1;
-  f128 nearest = 0;
+  f128 nearest = 0, doubt = slack() * (length(p) + length(c.hi - c.lo));
+  bool close = false;
   for (int i = 0; i < 3; ++i) {  // the first axis among equals, as in the search
     if (ray.direction[i] == 0) continue;
     f128 off = fabsq(p[i] - ((ray.direction[i] > 0) == entering ? c.lo[i] : c.hi[i]));
-    if (face < 0 || off < nearest - slack() * (length(p) + length(c.hi - c.lo))) face = i, nearest = off;
+    close = close || (face >= 0 && fabsq(off - nearest) <= doubt);
+    if (face < 0 || off < nearest - doubt) face = i, nearest = off;
   }
+  if (close && ray.rational) face = rationalFace(box, ray, entering);
   V3 n;
   n[face] = (ray.direction[face] > 0) == entering ? -1 : 1;
   return {n, p};

@@ -28,13 +28,13 @@ inline Ball ball(const Disc& disc) { return {disc.center, disc.radius}; }
 inline Cut cut(const Disc& disc, const RayQ& ray) {
   V3 n(disc.normal), c(disc.center);
   Cut plane = cutPlane(n, c, ray);
-  if (!plane.hit) return {};
+  if (!plane.hit) return plane;
   V3 q = ray.origin - c + plane.t * ray.direction;
   f128 r = disc.radius, reach = length(ray.origin - c) + r;
   // The point's error: that of t along the ray.
   f128 grazing = length(n) * length(ray.direction) / fabsq(dot(n, ray.direction));
-  if (dot(q, q) > r * r + slack() * reach * reach * grazing) return {};
-  return plane;
+  f128 beyond = dot(q, q) - r * r, doubt = slack() * reach * reach * grazing;
+  return {beyond <= doubt, plane.t, fabsq(beyond) <= doubt};
 }
 
 inline Surface surface(const Disc& disc, const RayQ& ray, f128 t) {

@@ -89,12 +89,14 @@ struct EyeWriters {
 /// A ray in binary128, t counted in lengths of its direction.
 struct RayQ {
   V3 origin, direction;
+  bool rational = false;  // the very numbers of a free ray, so that rational_pass.h can decide
 };
 
 /// Second pass: what one solid says of a ray. Decisions within binary128's own rounding count as on the edge (hit).
 struct Cut {
   bool hit = false;
   f128 t = 0;
+  bool close = false;  // some decision was within that rounding
 };
 
 /// Relative rounding that a decision in binary128 is granted; far above 2^-113, far below anything fp64 can tell.

@@ -28,7 +28,7 @@ inline Cut cutPlane(V3 n, V3 p, const RayQ& ray) {
   V3 f = p - ray.origin;
   f128 distance = dot(n, f), towards = dot(n, ray.direction);
   f128 slackD = slack() * length(n) * length(f), slackT = slack() * length(n) * length(ray.direction);
-  if (fabsq(distance) <= slackD || fabsq(towards) <= slackT) return {};  // eye in the plane, or parallel to it
+  if (fabsq(distance) <= slackD || fabsq(towards) <= slackT) return {false, 0, true};  // eye in the plane, or parallel
   f128 t = distance / towards;
   return {t > 0, t};
 }

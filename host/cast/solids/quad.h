@@ -17,7 +17,8 @@ inline void packWorld(const Quad& quad, V3 origin, f128 index, RowWriter& out) {
 inline Outline outline(const Quad& q) {
   Outline o;
   for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t k = 0; k < 3; ++k) o.points[i][k] = q.vertex[k] + (i & 1 ? q.span1[k] : 0) + (i & 2 ? q.span2[k] : 0);
+    for (std::size_t k = 0; k < 3; ++k)
+      o.points[i][k] = q.vertex[k] + (i & 1 ? q.span1[k] : 0) + (i & 2 ? q.span2[k] : 0);
   o.count = 4;
   return o;
 }
@@ -29,8 +30,7 @@ inline Ball ball(const Quad& quad) {
 
 inline Cut cut(const Quad& quad, const RayQ& ray) {
   SpanCut c = cutSpan(span(quad), ray);
-  bool inside = c.beta >= -c.doubt && c.gamma >= -c.doubt && c.beta <= 1 + c.doubt && c.gamma <= 1 + c.doubt;
-  return inside ? c.plane : Cut{};
+  return c.within(smaller(smaller(c.beta, c.gamma), 1 - larger(c.beta, c.gamma)));
 }
 
 inline Surface surface(const Quad& quad, const RayQ& ray, f128) {

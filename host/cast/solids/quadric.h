@@ -72,20 +72,24 @@ inline void packWorld(const Quadric& quadric, V3 origin, f128 index, RowWriter& 
 
 /// Smallest t > 0 with A t^2 + 2 B t + C = 0; scales are the sizes of the terms that A, B and C were summed from.
 inline Cut smallestRoot(f128 A, f128 B, f128 C, f128 scaleA, f128 scaleB, f128 scaleC) {
-  if (fabsq(A) <= slack() * scaleA) A = 0;
-  if (fabsq(B) <= slack() * scaleB) B = 0;
-  if (fabsq(C) <= slack() * scaleC) C = 0;
-  if (A == 0 && B == 0) return {};
+  Cut best;
+  auto flushed = [&](f128 x, f128 scale) {
+    bool zero = fabsq(x) <= slack() * scale;
+    best.close = best.close || zero;
+    return zero ? 0 : x;
+  };
+  A = flushed(A, scaleA), B = flushed(B, scaleB), C = flushed(C, scaleC);
+  if (A == 0 && B == 0) return best;
   f128 q = B * B - A * C;
   f128 doubt = slack() * (2 * fabsq(B) * scaleB + fabsq(A) * scaleC + fabsq(C) * scaleA + scaleB * scaleB * slack());
-  if (q < -doubt) return {};
+  best.close = best.close || fabsq(q) <= doubt;
+  if (q < -doubt) return best;
   f128 h = q > 0 ? sqrtq(q) : 0;
   f128 z = B > 0 ? -(B + h) : h - B;  // roots z/A and C/z, no cancellation
-  Cut best;
   auto offer = [&](f128 numerator, f128 denominator) {
     if (denominator == 0 || numerator == 0) return;
     f128 t = numerator / denominator;
-    if (t > 0 && (!best.hit || t < best.t)) best = {true, t};
+    if (t > 0 && (!best.hit || t < best.t)) best.hit = true, best.t = t;
   };
   offer(z, A);
   offer(C, z);

@@ -47,6 +47,12 @@ struct SpanCut {
   Cut plane;
   f128 beta = 0, gamma = 0;
   f128 doubt = 0;  // of beta and gamma
+
+  /// `inside` is the smallest of the numbers that must not be negative.
+  Cut within(f128 inside) const {
+    if (!plane.hit) return plane;
+    return {inside >= -doubt, plane.t, fabsq(inside) <= doubt};
+  }
 };
 
 inline SpanCut cutSpan(const Span& s, const RayQ& ray) {
@@ -78,8 +84,7 @@ inline Ball ball(const Triangle& t) { return {t.v1, std::max(distance(t.v1, t.v2
 
 inline Cut cut(const Triangle& triangle, const RayQ& ray) {
   SpanCut c = cutSpan(span(triangle), ray);
-  bool inside = c.beta >= -c.doubt && c.gamma >= -c.doubt && c.beta + c.gamma <= 1 + c.doubt;
-  return inside ? c.plane : Cut{};
+  return c.within(smaller(smaller(c.beta, c.gamma), 1 - c.beta - c.gamma));
 }
 
 inline Surface surface(const Triangle& triangle, const RayQ& ray, f128) {
