@@ -115,6 +115,12 @@ TEST_P(Render, AovsStandBesideTheImage) {
   EXPECT_TRUE(std::isinf(std::get<1>(distance.values)[0]));
 }
 
+TEST_P(Render, AChannelNamedTwiceIsWrittenOnce) {
+  const Result result = render({scene_, "-o", folder_ / "out.pfm", "--aov", "normal,normal", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out).at("outputs").size(), 2u);
+}
+
 TEST_P(Render, SecondIntegratorAndTwoSided) {
   const std::string scene = bundled("a_solids");
   rendered({scene}, "a.png");
