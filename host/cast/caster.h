@@ -19,7 +19,7 @@ enum class Arithmetic { automatic, fp64, df32 };  // of `exact`
 struct CastOptions {
   Method method = Method::exact;
   Arithmetic arithmetic = Arithmetic::automatic;
-  std::string shaderFolder;                           // compile from here instead of the carried modules; "" = carried
+  std::string shaderFolder{};                         // compile from here instead of the carried modules; "" = carried
   std::size_t memoryBudget = std::size_t{512} << 20;  // bytes for host-visible buffers
 };
 
@@ -66,9 +66,9 @@ class QueryCaster {
   /// Casts at another world from now on, which must outlive the caster. The pipeline stays if both worlds have as many
   /// solids of each kind, so that a solid after the other costs next to nothing.
   void setWorld(const World& world);
-  /// Only the shader, once more over the rays of the last cast() (its last 65536, if there were more): nothing is
-  /// copied in or out. GPU time in ms. For benchmarks.
-  double dispatchOnly();
+  /// Only the shader, over these rays (at most 65536), or those of the last call if there are none: nothing is read
+  /// back. GPU time in ms. For benchmarks.
+  double dispatchOnly(std::span<const QueryRay> rays = {});
   const CastStats& stats() const;
 
  private:

@@ -72,14 +72,15 @@ void quadric_free(uint row, FreeRay ray, inout Best best) {
   real h = root(q);
   bool away = B > real(0);
   real sum = h + abs(B);
-  real s = away ? quotient(-A, sum) : quotient(sum, C);
+  bool on = C == real(0);  // the surface: t = 0 does not count
+  real s = away || on ? quotient(-A, away ? sum : B + B) : quotient(sum, C);
   decidedAgainst(best, C, cScale);
   decidedAgainst(best, q, ray.squared * (wScale * wScale + cScale * size));
   decidedAgainst(best, q < real(0) ? wScale * wScale + cScale * size : mul(h, sum), ray.squared * (wScale * wScale + cScale * size));
   decidedAgainst(best, away ? A : real(1), away ? ray.squared * size : real(1));
   precise real3 G = Md * sgn + w * (s * sgn);
   real cosine = quotient(sgn * s * h, length3(G));
-  offer(best, s > real(0), s, cosine, m.w);
+  offer(best, s > real(0), s, on && !away ? -cosine : cosine, m.w);
 }
 
 void quadric_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {

@@ -36,7 +36,7 @@ void sphere_free(uint row, FreeRay ray, inout Best best) {
   real b = dot3(f, ray.direction);
   real q = sub(mul(b, b), mul(ray.squared, outside));
   real h = root(q);
-  bool inner = outside < real(0);
+  bool inner = outside < real(0) || (outside == real(0) && b < real(0));  // on the surface and entering: the far side
   // outside: (h - b)/C for b < 0; inside: (h + b)/-C leaving, a/(h - b) entering the centre's side
   real numerator = inner && b < real(0) ? ray.squared : inner ? h + b : h - b;
   real denominator = inner && b < real(0) ? h - b : abs(outside);

@@ -1,5 +1,5 @@
 // The catalogue of extreme cases: every method answers what its case allows it.
-#include "tests/catalogue/catalogue.h"
+#include "host/catalogue/catalogue.h"
 
 #include <cmath>
 #include <map>
@@ -78,7 +78,7 @@ TEST_F(OnDevice, CatalogueFamiliesOfExact) {
     if (c.kind == "mesh") {
       const oracle::CrackBatch batch = oracle::makeCracks(c.family == "vertices", rays, c.seed);
       castAndCompare(device(), batch.world, batch.rays, {}, tally);
-      EXPECT_EQ(tally.hits, tally.rays) << c.id;
+      EXPECT_EQ(tally.misses, 0u) << c.id;
     } else {
       for (const oracle::Kind kind : oracle::kKinds)
         if (c.kind == oracle::nameOf(kind)) tally = measureFamily(device(), kind, c.family, {rays, 500, 1, c.seed}, {});

@@ -16,17 +16,17 @@ INSTANTIATE_TEST_SUITE_P(, ExactRays, testing::ValuesIn(oracle::kKinds), kindLab
 
 TEST_P(ExactRays, OneSolid) {
   for (const std::string& family : oracle::familiesOf(GetParam())) {
-    const Tally tally = measureFamily(device(), GetParam(), family, {12000, 3000, 1, 1}, {});
+    const Tally tally = measureFamily(device(), GetParam(), family, {12000, 60, 1, 1}, {});
     EXPECT_TRUE(tally.exact()) << family << ": " << text(tally);
     EXPECT_EQ(tally.rays, 12000u);
     EXPECT_GT(tally.hits, 20u) << family;
   }
 }
 
-// The nearest of several, by many more shapes: a pipeline serves them all.
+// The nearest of several that may lie in each other.
 TEST_P(ExactRays, ManySolids) {
   for (const std::string& family : oracle::familiesOf(GetParam())) {
-    const Tally tally = measureFamily(device(), GetParam(), family, {2000, 50, 8, 2}, {});
+    const Tally tally = measureFamily(device(), GetParam(), family, {2000, 25, 8, 2}, {});
     EXPECT_TRUE(tally.exact()) << family << ": " << text(tally);
   }
 }
@@ -34,8 +34,7 @@ TEST_P(ExactRays, ManySolids) {
 // Decisions in fp32 (no fp64 in shaders): more doubt, the same answers.
 TEST_P(ExactRays, WithoutFp64) {
   for (const std::string& family : oracle::familiesOf(GetParam())) {
-    const Tally tally =
-        measureFamily(device(), GetParam(), family, {2000, 1000, 1, 3}, {.arithmetic = Arithmetic::df32});
+    const Tally tally = measureFamily(device(), GetParam(), family, {2000, 40, 1, 3}, {.arithmetic = Arithmetic::df32});
     EXPECT_TRUE(tally.exact()) << family << ": " << text(tally);
   }
 }
@@ -68,7 +67,7 @@ TEST_P(Meshes, HaveNoCracks) {
       const oracle::CrackBatch batch = oracle::makeCracks(GetParam(), 5000, seed);
       castAndCompare(device(), batch.world, batch.rays, {.arithmetic = arithmetic}, tally);
     }
-    EXPECT_EQ(tally.hits, 25000u) << "a ray inside a closed mesh got out";
+    EXPECT_EQ(tally.misses, 0u) << "a ray inside a closed mesh got out";
     EXPECT_TRUE(tally.exact()) << text(tally);
     EXPECT_GT(tally.doubtful, 0u) << "edges are where the second pass is for";
   }
@@ -91,7 +90,7 @@ TEST(ExactOnSwiftShader, RaysAndImages) {
     EXPECT_FALSE(device.info().float64);
     for (const oracle::Kind kind : oracle::kKinds) {
       for (const char* family : {"generic", "axis", "lattice", "boundary"}) {
-        const Tally tally = measureFamily(device, kind, family, {1000, 500, 1, 4}, {});
+        const Tally tally = measureFamily(device, kind, family, {1000, 40, 1, 4}, {});
         EXPECT_TRUE(tally.exact()) << oracle::nameOf(kind) << " " << family << ": " << text(tally);
       }
       for (const char* family : {"perspective", "narrow", "orthographic", "environment"}) {

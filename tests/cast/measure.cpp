@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <mutex>
+#include <optional>
 #include <thread>
 
 #include "host/scene/load.h"
@@ -66,7 +66,8 @@ double seconds(std::chrono::steady_clock::time_point since) {
 }  // namespace
 
 void Tally::add(const Tally& other) {
-  rays += other.rays, hits += other.hits, wrong += other.wrong, doubtful += other.doubtful, seconds += other.seconds;
+  rays += other.rays, hits += other.hits, wrong += other.wrong, misses += other.misses, doubtful += other.doubtful,
+      seconds += other.seconds;
   t = std::fmax(t, other.t), normal = std::fmax(normal, other.normal);
   local = std::fmax(local, other.local), position = std::fmax(position, other.position);
   for (const std::string& complaint : other.complaints)
@@ -104,8 +105,8 @@ std::string text(const Tally& tally) {
   return all;
 }
 
-void compare(const Answer& answer, const oracle::WorldTruth& truth, Tally& tally, const std::string& world,
-             const std::string& ray) {
+void compare(const Answer& answer, const oracle::WorldTruth& truth, Tally& tally,
+             const std::function<std::string()>& where) {
   const oracle::Truth& best = truth.truth;
   // A hit that fp32 cannot tell from infinity is a miss.
   const bool beyond = truth.index >= 0 && oracle::beyondFloat(best.t);
@@ -114,6 +115,7 @@ void compare(const Answer& answer, const oracle::WorldTruth& truth, Tally& tally
   std::string what;
   if (answer.index != index) {
     ++tally.wrong;
+    tally.misses += answer.index < 0;
     what = format("solid %d t %.9g, truly %d t %.9g", answer.index, answer.t, index, double(best.t));
   } else if (index >= 0) {
     ++tally.hits;
@@ -131,37 +133,50 @@ void compare(const Answer& answer, const oracle::WorldTruth& truth, Tally& tally
   }
   if (what.empty() || tally.complaints.size() >= kComplaints) return;
   tally.complaints.push_back(what + format(" (margin %.3g ulp, face %.3g) ", truth.marginUlps, best.faceMarginUlps) +
-                             world + " | " + ray);
+                             where());
 }
 
-void castAndCompare(gpu::Device& device, const World& world, const std::vector<QueryRay>& rays,
-                    const CastOptions& options, Tally& tally) {
+namespace {
+
+void castAndCompare(QueryCaster& caster, const World& world, const std::vector<QueryRay>& rays, Tally& tally) {
   const auto start = std::chrono::steady_clock::now();
-  QueryCaster caster(device, world, options);
+  const std::uint64_t before = caster.stats().fallbackRays;
   std::vector<QueryHit> hits(rays.size());
   caster.cast(rays, hits);
   tally.seconds += seconds(start);
-  tally.doubtful += caster.stats().fallbackRays;
-  const std::string name = text(world);
+  tally.doubtful += caster.stats().fallbackRays - before;
   inShares(rays.size(), tally, [&](std::size_t i, Tally& part) {
     const QueryHit& h = hits[i];
-    compare({h.index, h.t, h.normal, h.local, h.position}, oracle::cast(world, oracle::exactRay(rays[i])), part, name,
-            text(rays[i]));
+    compare({h.index, h.t, h.normal, h.local, h.position}, oracle::cast(world, oracle::exactRay(rays[i])), part,
+            [&] { return text(world) + " | " + text(rays[i]); });
   });
+}
+
+}  // namespace
+
+void castAndCompare(gpu::Device& device, const World& world, const std::vector<QueryRay>& rays,
+                    const CastOptions& options, Tally& tally) {
+  QueryCaster caster(device, world, options);
+  castAndCompare(caster, world, rays, tally);
 }
 
 Tally measureFamily(gpu::Device& device, oracle::Kind kind, const std::string& family, const FamilyPlan& plan,
                     const CastOptions& options) {
   Tally tally;
   const auto batches = oracle::makeBatches(kind, family, plan.rays, plan.seed, plan.raysPerShape);
-  for (std::size_t first = 0; first < batches.size(); first += plan.shapesPerWorld) {
+  std::optional<QueryCaster> caster;
+  World worlds[2];  // the caster's and the next
+  for (std::size_t first = 0, turn = 0; first < batches.size(); first += plan.shapesPerWorld, turn = 1 - turn) {
     std::vector<Shape> shapes;
     std::vector<QueryRay> rays;
     for (std::size_t i = first; i < std::min(first + plan.shapesPerWorld, batches.size()); ++i) {
       shapes.push_back(batches[i].shape);
       rays.insert(rays.end(), batches[i].rays.begin(), batches[i].rays.end());
     }
-    castAndCompare(device, worldOf(shapes), rays, options, tally);
+    worlds[turn] = worldOf(shapes);
+    if (caster) caster->setWorld(worlds[turn]);
+    else caster.emplace(device, worlds[turn], options);
+    castAndCompare(*caster, worlds[turn], rays, tally);
   }
   return tally;
 }
@@ -205,13 +220,13 @@ Tally measureImage(gpu::Device& device, const Scene& scene, const CastOptions& o
   const auto three = [](const std::vector<float>& v, std::size_t i) {
     return std::array<float, 3>{v[3 * i], v[3 * i + 1], v[3 * i + 2]};
   };
-  const std::string name = text(scene.world);
   inShares(band.solid.size(), tally, [&](std::size_t i, Tally& part) {
     const auto x = static_cast<int>(i) % scene.width, y = static_cast<int>(i) / scene.width;
     Answer answer{band.solid[i], band.distance[i], three(band.normal, i), three(band.local, i),
                   three(band.position, i)};
     const oracle::Ray128 ray = oracle::pixelRay(scene.camera, scene.width, scene.height, x + 0.5, y + 0.5);
-    compare(answer, oracle::cast(scene.world, ray), part, name, format("pixel (%d, %d)", x, y));
+    compare(answer, oracle::cast(scene.world, ray), part,
+            [&] { return text(scene.world) + format(" | pixel (%d, %d)", x, y); });
     if (answer.index < 0 && answer.t != INFINITY) ++part.wrong;
   });
   return tally;

@@ -1,6 +1,7 @@
 // The GPU side's answers counted against the oracle's: what the tests hold to the bars, and the sweep prints.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace solidcast {
 /// and positions.
 struct Tally {
   std::uint64_t rays = 0, hits = 0;
-  std::uint64_t wrong = 0;  // hit or miss, or the solid
+  std::uint64_t wrong = 0;   // hit or miss, or the solid
+  std::uint64_t misses = 0;  // of these, the ones where a solid was missed
   double t = 0, normal = 0, local = 0, position = 0;
   std::uint64_t doubtful = 0;           // CastStats::fallbackRays
   double seconds = 0;                   // of the caster alone
@@ -24,22 +26,22 @@ struct Tally {
   void add(const Tally& other);
 };
 
-/// One answer: of a free ray, or a pixel. `what` tells where it came from and is asked for only where it is needed.
+/// One answer: of a free ray, or a pixel. `where` is asked for where the answer is beyond the bars.
 struct Answer {
   std::int32_t index = -1;
   float t = 0;
   std::array<float, 3> normal{}, local{}, position{};
 };
-void compare(const Answer& answer, const oracle::WorldTruth& truth, Tally& tally, const std::string& world,
-             const std::string& ray);
+void compare(const Answer& answer, const oracle::WorldTruth& truth, Tally& tally,
+             const std::function<std::string()>& where);
 
-/// Rays of a batch at its world; ray i knows nothing of others.
+/// Rays at one world.
 void castAndCompare(gpu::Device& device, const World& world, const std::vector<QueryRay>& rays,
                     const CastOptions& options, Tally& tally);
 
 struct FamilyPlan {
-  std::size_t rays = 10000, raysPerShape = 1000;
-  std::size_t shapesPerWorld = 1;  // more: the nearest of several, and more shapes for the time pipelines take
+  std::size_t rays = 10000, raysPerShape = 100;
+  std::size_t shapesPerWorld = 1;  // more: the nearest of several
   std::uint64_t seed = 1;
 };
 Tally measureFamily(gpu::Device& device, oracle::Kind kind, const std::string& family, const FamilyPlan& plan,

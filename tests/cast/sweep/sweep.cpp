@@ -50,9 +50,9 @@ void run(const Request& request) {
         castAndCompare(device, batch.world, batch.rays, options, tally);
       }
       line("mesh", vertices ? "vertices" : "edges", tally, exact);
-      if (exact && tally.hits != tally.rays) {
+      if (exact && tally.misses > 0) {
         failed = true;
-        std::printf("    %llu misses\n", static_cast<unsigned long long>(tally.rays - tally.hits));
+        std::printf("    %llu misses\n", static_cast<unsigned long long>(tally.misses));
       }
     }
     return;
