@@ -79,6 +79,7 @@ struct QueryCaster::Impl {
       std::vector<std::uint32_t> spirv = programSpirv(program, options);
       pipeline.emplace(device.makePipeline(spirv, wanted));
       stats.spirvBytes = spirv.size() * 4;
+    stats.specialisedSpirvBytes = pipeline->spirvBytes();
     }
     constants = wanted;
     auto use = storage ? gpu::BufferUse::storage : gpu::BufferUse::uniform;
@@ -106,21 +107,24 @@ struct QueryCaster::Impl {
     return device.run(dispatches);
   }
 
-  void block(std::span<const QueryRay> rays, std::span<QueryHit> hits) {
+  void upload(std::span<const QueryRay> rays) {
     auto rows = buffers[2].as<RayRow>();
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const QueryRay& r = rays[i];
       rows[i] = {{r.origin[0], r.origin[1], r.origin[2]}, r.tMax, {r.direction[0], r.direction[1], r.direction[2]}, 0};
     }
-    auto n = static_cast<std::uint32_t>(rays.size());
-    lastRays = n;
+    lastRays = static_cast<std::uint32_t>(rays.size());
+  }
+
+  void block(std::span<const QueryRay> rays, std::span<QueryHit> hits) {
+    upload(rays);
     auto start = std::chrono::steady_clock::now();
-    double ms = dispatch(n);
+    double ms = dispatch(lastRays);
     if (stats.rays == 0)
       stats.first_dispatch_ms =
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     stats.dispatch_ms += ms;
-    stats.rays += n;
+    stats.rays += lastRays;
     start = std::chrono::steady_clock::now();
     auto found = buffers[3].as<HitRow>();
     if (second) {
@@ -177,7 +181,10 @@ void QueryCaster::cast(std::span<const QueryRay> rays, std::span<QueryHit> hits)
 
 void QueryCaster::setWorld(const World& world) { impl_->setWorld(world); }
 
-double QueryCaster::dispatchOnly() { return impl_->lastRays > 0 ? impl_->dispatch(impl_->lastRays) : 0; }
+double QueryCaster::dispatchOnly(std::span<const QueryRay> rays) {
+  if (!rays.empty()) impl_->upload(rays.first(std::min(blockRays, rays.size())));
+  return impl_->lastRays > 0 ? impl_->dispatch(impl_->lastRays) : 0;
+}
 
 const CastStats& QueryCaster::stats() const { return impl_->stats; }
 

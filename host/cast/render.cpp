@@ -103,6 +103,7 @@ class Pass {
     stats.shader_ms += since(start);
     stats.module += (stats.module.empty() ? "" : ", ") + program_.moduleName();
     stats.spirvBytes += spirv.size() * 4;
+    stats.specialisedSpirvBytes += pipeline_->spirvBytes();
     stats.plan.push_back(why);
     stats.plan.push_back(program_.storage
                              ? "records in storage buffers: " + std::to_string(search.bytes.size()) + " bytes, " +

@@ -46,6 +46,7 @@ struct Pipeline::Impl {
   OfDevice<VkDescriptorSetLayout> setLayout;
   OfDevice<VkPipelineLayout> layout;
   OfDevice<VkPipeline> pipeline;
+  std::size_t spirvBytes = 0;
 };
 
 /// Records and submits; keeps its pools between calls, so that a call costs little beside the dispatches.

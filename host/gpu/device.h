@@ -65,6 +65,7 @@ class Pipeline {
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
   ~Pipeline();
+  std::size_t spirvBytes() const;  // of the module as the driver got it, specialised
 
  private:
   friend class Device;
@@ -105,7 +106,8 @@ class Device {
   /// `needsFloat64` and the like are read from its capabilities: missing ones throw Exit::noDevice with the feature's name.
   /// A workgroup beyond the device's limits throws Exit::noDevice with both numbers; SPIR-V that is no compute module
   /// Exit::shader.
-  Pipeline makePipeline(std::span<const std::uint32_t> spirv, const Specialisation& specialisation = {});
+  /// The driver gets the module specialised: without the code and bindings that the constants rule out.
+  Pipeline makePipeline(std::span<const std::uint32_t> whole, const Specialisation& specialisation = {});
 
   /// Runs the dispatches in order, each after the writes of the one before; waits for the end.
   /// Returns GPU time in ms by timestamps (wall time where there are none). Push constants may be longer than the

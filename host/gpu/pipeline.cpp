@@ -3,6 +3,7 @@
 
 #include "host/error.h"
 #include "host/gpu/core.h"
+#include "host/gpu/shaders.h"
 
 namespace solidcast::gpu {
 namespace {
@@ -76,11 +77,14 @@ Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 Pipeline::~Pipeline() = default;
 
-Pipeline Device::makePipeline(std::span<const std::uint32_t> spirv, const Specialisation& specialisation) {
+Pipeline Device::makePipeline(std::span<const std::uint32_t> whole, const Specialisation& specialisation) {
   const Core& core = *impl_->core;
   auto impl = std::make_unique<Pipeline::Impl>();
   impl->core = impl_->core;
-  impl->interface = readInterface(spirv, specialisation);
+  readInterface(whole, specialisation);  // refuses what is no module of ours, before it is cut
+  const std::vector<std::uint32_t> spirv = specialised(whole, {specialisation.begin(), specialisation.end()});
+  impl->interface = readInterface(spirv, {});
+  impl->spirvBytes = spirv.size() * sizeof spirv[0];
   const ShaderInterface& shader = impl->interface;
   requireDeviceCan(core, shader);
 
@@ -111,20 +115,11 @@ Pipeline Device::makePipeline(std::span<const std::uint32_t> spirv, const Specia
   impl->layout = {core.device, layout, core.vkDestroyPipelineLayout};
 
   const VkShaderModuleCreateInfo moduleInfo{
-      .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
+      .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = impl->spirvBytes, .pCode = spirv.data()};
   VkShaderModule module{};
   check(core.vkCreateShaderModule(core.device, &moduleInfo, nullptr, &module), "load a shader module");
   const OfDevice<VkShaderModule> moduleOwner(core.device, module, core.vkDestroyShaderModule);
 
-  std::vector<VkSpecializationMapEntry> entries;
-  std::vector<std::uint32_t> values;
-  for (const auto& [id, value] : specialisation) {
-    if (!shader.specialisationDefaults.contains(id)) continue;  // a constant that this module does not have
-    entries.push_back({id, std::uint32_t(values.size() * sizeof value), sizeof value});
-    values.push_back(value);
-  }
-  const VkSpecializationInfo special{std::uint32_t(entries.size()), entries.data(), values.size() * sizeof values[0],
-                                     values.data()};
   const VkComputePipelineCreateInfo pipelineInfo{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                                                  .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                                                            .pNext = nullptr,
@@ -132,7 +127,7 @@ Pipeline Device::makePipeline(std::span<const std::uint32_t> spirv, const Specia
                                                            .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                                                            .module = module,
                                                            .pName = shader.entryPoint.c_str(),
-                                                           .pSpecializationInfo = &special},
+                                                           .pSpecializationInfo = nullptr},
                                                  .layout = layout};
   VkPipeline pipeline{};
   const VkResult result = core.vkCreateComputePipelines(core.device, {}, 1, &pipelineInfo, nullptr, &pipeline);
@@ -143,5 +138,7 @@ Pipeline Device::makePipeline(std::span<const std::uint32_t> spirv, const Specia
   impl->pipeline = {core.device, pipeline, core.vkDestroyPipeline};
   return Pipeline(std::move(impl));
 }
+
+std::size_t Pipeline::spirvBytes() const { return impl_->spirvBytes; }
 
 }  // namespace solidcast::gpu

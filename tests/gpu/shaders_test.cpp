@@ -134,10 +134,14 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   float x = float(i);
   Hit hit = Hit(1e30, vec3(0));
-  for (uint k = 0; k < sphereCount; ++k) intersectSphere(spheres[k], x, hit);
-  for (uint k = 0; k < boxCount; ++k) {
-    float t = intersectBox(boxes[k], x);
-    if (t < hit.t) { hit.t = t; hit.normal = boxes[k].zzz; }
+  if (sphereCount > 0) {
+    for (uint k = 0; k < sphereCount; ++k) intersectSphere(spheres[k], x, hit);
+  }
+  if (boxCount > 0) {
+    for (uint k = 0; k < boxCount; ++k) {
+      float t = intersectBox(boxes[k], x);
+      if (t < hit.t) { hit.t = t; hit.normal = boxes[k].zzz; }
+    }
   }
   distances[i] = hit.t;
   if (wantsNormal) normals[i] = vec4(normalize(hit.normal), 0);
