@@ -29,7 +29,7 @@ struct CastStats {
   std::uint64_t rays = 0, fallbackRays = 0;
   std::uint64_t deviceBytes = 0;
   std::string module;
-  std::size_t spirvBytes = 0, specialisedSpirvBytes = 0;  // the second only after leftOut() was asked for
+  std::size_t spirvBytes = 0, specialisedSpirvBytes = 0;  // as written, and as the driver got it
   std::vector<std::string> plan;                          // lines: what was decided, and why
   std::vector<std::string> leftOut;                       // lines: what this scene does not need
 };

@@ -103,6 +103,7 @@ int run(int argc, char** argv) {
   addQuery(app);
   addDevices(app);
   addGenerate(app);
+  addStudy(app);
   try {
     checkVerb(app, argc, argv);
     app.parse(argc, argv);

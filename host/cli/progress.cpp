@@ -23,7 +23,7 @@ Progress::~Progress() {
   if (drawn_) toTerminal(kWipe);
 }
 
-void Progress::show(double fraction) {
+void Progress::show(double fraction, const std::string& what) {
   using namespace std::chrono_literals;
   if (!terminal_) return;
   const auto now = std::chrono::steady_clock::now();
@@ -37,6 +37,7 @@ void Progress::show(double fraction) {
     const double passed = std::chrono::duration<double>(now - start_).count();
     text += ", " + std::to_string(static_cast<long>(passed / fraction * (1 - fraction) + 0.5)) + " s left";
   }
+  if (!what.empty()) text += ": " + what;
   toTerminal(text);
   drawn_ = true;
 }

@@ -13,5 +13,6 @@ void addCompare(CLI::App& app);
 void addQuery(CLI::App& app);
 void addDevices(CLI::App& app);
 void addGenerate(CLI::App& app);
+void addStudy(CLI::App& app);
 
 }  // namespace solidcast::cli
