@@ -89,8 +89,9 @@ class Values {
     if constexpr (std::is_same_v<T, bool>) {
       append(std::uint32_t{element});
     } else if constexpr (std::is_arithmetic_v<T>) {
-      const auto* from = reinterpret_cast<const std::byte*>(&element);
-      bytes_.insert(bytes_.end(), from, from + sizeof element);
+      const std::size_t end = bytes_.size();
+      bytes_.resize(end + sizeof element);
+      std::memcpy(bytes_.data() + end, &element, sizeof element);
     } else {
       for (const auto& component : element) append(component);
     }
