@@ -58,7 +58,8 @@ void box_free(uint row, FreeRay ray, inout Best best) {
   real3 hi = minus3(worldRecord(row + 1u).xyz, ray.origin);
   real length = root(ray.squared);
   real scale = originScale(ray, low.xyz, lo) + originScale(ray, worldRecord(row + 1u).xyz, hi);
-  real enter = -BIG, leave = BIG;
+  real enter = real(0), leave = real(0);
+  bool unbounded = true;
   real towardsEnter = real(0), towardsLeave = real(0);
   bool miss = false;
   for (int i = 0; i < 3; ++i) {
@@ -70,14 +71,15 @@ void box_free(uint row, FreeRay ray, inout Best best) {
     } else {
       real first = quotient(d > real(0) ? lo[i] : hi[i], d);
       real second = quotient(d > real(0) ? hi[i] : lo[i], d);
-      if (first > enter) {
+      if (unbounded || first > enter) {
         enter = first;
         towardsEnter = abs(d);
       }
-      if (second < leave) {
+      if (unbounded || second < leave) {
         leave = second;
         towardsLeave = abs(d);
       }
+      unbounded = false;
     }
   }
   // Errors of the distances are those of lo and hi over |d_i|.

@@ -35,6 +35,13 @@ void disc_free(uint row, FreeRay ray, inout Best best) {
   real towards = dot3(n.xyz, ray.direction);
   precise real3 q = ray.direction * distance - f * towards;
   real r = mul(n.w, towards);
+#ifndef EXACT  // squares of 1e20 overflow fp32; only the sign counts
+  real unit = larger(larger(larger(abs(q.x), abs(q.y)), abs(q.z)), abs(r));
+  if (unit > real(0)) {
+    q = q / unit;
+    r = r / unit;
+  }
+#endif
   real inside = sub(mul(r, r), dot3(q, q));
   real reach = originScale(ray, c.xyz, f);
   bool hit = inside >= real(0) && distance != real(0) && towards != real(0);

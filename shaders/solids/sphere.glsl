@@ -32,9 +32,21 @@ void sphere_free(uint row, FreeRay ray, inout Best best) {
   real index = worldRecord(row + 1u).x;
   real3 f = minus3(ray.origin, c.xyz);
   real size = originScale(ray, c.xyz, f), scale = size * size + c.w * c.w;
-  real outside = sub(dot3(f, f), mul(c.w, c.w));
+  real r = c.w, unit = real(1);
+#ifndef EXACT  // squares of 1e20 overflow fp32; a power of two, so that scaling rounds nothing
+  unit = larger(larger(larger(abs(f.x), abs(f.y)), abs(f.z)), r);
+  unit = uintBitsToFloat(max(floatBitsToUint(unit) & 0x7f800000u, 0x00800000u));
+  f = f / unit;
+  r = r / unit;
+#endif
+  real outside = sub(dot3(f, f), mul(r, r));
   real b = dot3(f, ray.direction);
+#ifdef EXACT
   real q = sub(mul(b, b), mul(ray.squared, outside));
+#else  // the same by the vector from the centre to the ray: b^2 and |d|^2 C of a far small sphere cancel
+  precise real3 across = f - ray.direction * (b / ray.squared);
+  real q = mul(ray.squared, sub(mul(r, r), dot3(across, across)));
+#endif
   real h = root(q);
   bool inner = outside < real(0) || (outside == real(0) && b < real(0));  // on the surface and entering: the far side
   // outside: (h - b)/C for b < 0; inside: (h + b)/-C leaving, a/(h - b) entering the centre's side
@@ -43,7 +55,7 @@ void sphere_free(uint row, FreeRay ray, inout Best best) {
   real s = quotient(numerator, denominator);
   decidedAgainst(best, outside, scale);
   decidedAgainst(best, q, ray.squared * scale);
-  offer(best, inner || b < real(0), s, (inner ? -h : h) / c.w, index);
+  offer(best, inner || b < real(0), quotient(s, unit), (inner ? -h : h) / r, index);
 }
 
 void sphere_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {

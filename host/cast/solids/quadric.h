@@ -64,10 +64,12 @@ inline void packEye(const Quadric& quadric, const EyeFrame& eye, f128 index, con
 
 inline void packWorld(const Quadric& quadric, V3 origin, f128 index, RowWriter& out) {
   QuadricForm Q = quadricForm(quadric);
+  // The equation may be scaled as one likes: coefficients of 1e30 or 1e-40 would leave fp32.
+  f128 k = 1 / powerOfTwo(Q.M.norm() > 0 ? Q.M.norm() : length(Q.l));
   V3 w = Q.M * origin + Q.l;
-  out.row(Q.M.xx, Q.M.yy, Q.M.zz, index);
-  out.row(Q.M.xy, Q.M.xz, Q.M.yz, dot(origin, w + Q.l) + Q.j);
-  out.row(w, 0);
+  out.row(Q.M.xx * k, Q.M.yy * k, Q.M.zz * k, index);
+  out.row(Q.M.xy * k, Q.M.xz * k, Q.M.yz * k, (dot(origin, w + Q.l) + Q.j) * k);
+  out.row(w * k, 0);
 }
 
 /// Smallest t > 0 with A t^2 + 2 B t + C = 0; scales are the sizes of the terms that A, B and C were summed from.
