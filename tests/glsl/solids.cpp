@@ -202,7 +202,7 @@ Function naiveFunction(gpu::Device& device, const std::string& kind) {
 Function finishFunction(gpu::Device& device, const std::string& kind, RealType type) {
   std::string signature = finishSignature;  // a device without fp64 has no dvec3
   signature.replace(signature.find("POINT"), 5, type == RealType::f64 ? "dvec3" : "vec3");
-  return made(device, kind, type, false, signature, finishBody);
+  return made(device, kind, type, type == RealType::f64, signature, finishBody);
 }
 
 float doubtOf(RealType type, bool eye) {
