@@ -109,11 +109,12 @@ real3 unit3(real3 a) {  // scaled first: squares of 1e30 overflow fp32
   precise real3 r = v / l;
   return r;
 }
-// Like decided(), with the scale known only here. NaN (overflow) is doubt.
+// Like decided(), with the scale known only here. NaN (overflow) is doubt, and so is a scale so small that the terms
+// behind the value have lost digits to underflow.
 void decidedAgainst(inout Best best, real value, real scale) {
 #ifdef EXACT
   real m = abs(value) / scale;
-  m = m >= real(0) ? m : real(0);
+  m = m >= real(0) && scale * real(BIG) >= real(1.0e7) ? m : real(0);
   best.margin = select(best.margin, m, less(m, best.margin));
 #endif
 }

@@ -44,11 +44,11 @@ void disc_free(uint row, FreeRay ray, inout Best best) {
 #endif
   real inside = sub(mul(r, r), dot3(q, q));
   real reach = originScale(ray, c.xyz, f);
-  bool hit = inside >= real(0) && distance != real(0) && towards != real(0);
+  bool within = inside >= real(0);
   decidedAgainst(best, inside, ray.squared * (reach * reach + n.w * n.w));
-  decidedAgainst(best, hit ? distance : reach, reach);
-  decidedAgainst(best, hit ? towards : real(1), root(ray.squared));
-  offer(best, hit, quotient(towards, distance), -towards, c.w);
+  decidedAgainst(best, within ? distance : reach, reach);
+  decidedAgainst(best, within ? towards : real(1), root(ray.squared));
+  offer(best, within && distance != real(0) && towards != real(0), quotient(towards, distance), -towards, c.w);
 }
 
 void disc_naive(uint row, vec3 origin, vec3 direction, inout Nearest best) {
