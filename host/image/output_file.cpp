@@ -4,8 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -41,7 +44,37 @@ int writeAll(int file, const char* data, std::size_t bytes) {
   return 0;
 }
 
+/// Names of unfinished outputs where a signal handler can read them: no heap, no locks. An output that finds no room
+/// here is only not tidied away after a signal.
+struct Unfinished {
+  std::atomic<const void*> owner = nullptr;
+  std::atomic<bool> ready = false;
+  std::array<char, 4096> name{};
+};
+std::array<Unfinished, 32> unfinished;
+
+void remember(const void* owner, const std::string& name) {
+  if (name.size() >= unfinished[0].name.size()) return;
+  for (Unfinished& slot : unfinished) {
+    const void* none = nullptr;
+    if (!slot.owner.compare_exchange_strong(none, owner)) continue;
+    std::memcpy(slot.name.data(), name.c_str(), name.size() + 1);
+    slot.ready = true;
+    return;
+  }
+}
+
+void forget(const void* owner) {
+  for (Unfinished& slot : unfinished)
+    if (slot.owner == owner) slot.ready = false, slot.owner = nullptr;
+}
+
 }  // namespace
+
+void removeUnfinishedOutputs() noexcept {
+  for (const Unfinished& slot : unfinished)
+    if (slot.ready) ::unlink(slot.name.data());
+}
 
 std::string systemMessage(int error) { return std::generic_category().message(error); }
 
@@ -66,6 +99,7 @@ OutputFile::~OutputFile() {
   if (file_ >= 0) ::close(file_);
   if (spool_ >= 0) ::close(spool_);
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  forget(this);
 }
 
 void OutputFile::fail(const std::string& what) const {
@@ -94,6 +128,7 @@ void OutputFile::openBeside() {
     if (reason == ENOENT) fail("the folder " + folder.string() + " does not exist");
     fail(systemMessage(reason) + " (folder " + folder.string() + ")");
   }
+  remember(this, temporary_);
   if (exists) static_cast<void>(::fchmod(file_, existing.st_mode & 07777));  // not ours to change, if it can't be kept
 }
 
@@ -140,6 +175,7 @@ void OutputFile::finish() {
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(systemMessage(errno));
   temporary_.clear();
+  forget(this);
 }
 
 }  // namespace solidcast

@@ -37,6 +37,9 @@ class OutputFile {
   double milliseconds_ = 0;
 };
 
+/// Removes what unfinished outputs have written so far. For signal handlers: calls nothing but unlink().
+void removeUnfinishedOutputs() noexcept;
+
 /// "No such file or directory" and the like, for an errno.
 std::string systemMessage(int error);
 
