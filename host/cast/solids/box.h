@@ -51,7 +51,9 @@ inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const Eye
       up[i] = 0, cap[i] = big;
       low1[i] = a == 0 ? -steep : 1 / a;
       low2[i] = b == 0 ? steep : 1 / b;
-      if (a == 0 || b == 0) onFace[i] = 1;
+      // Eye on this face: below the bound of any ray that leaves by it (the face itself is at t = 0, no hit), above
+      // all others.
+      if (a == 0 || b == 0) onFace[i] = 1, cap[i] = ldexpq(steep, rows.type() == RealType::f64 ? -66 : -42);
     }
     f128 plane = smaller(fabsq(a), fabsq(b));
     if ((a > 0 || b < 0) && (nearest < 0 || plane < nearest)) nearest = plane;

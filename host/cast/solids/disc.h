@@ -7,7 +7,7 @@ namespace solidcast {
 inline void packEye(const Disc& disc, const EyeFrame& eye, f128 index, const EyeWriters& out) {
   V3 n = normalized(V3(disc.normal)), f = eye.relative(disc.center);
   f128 r = disc.radius / eye.unit, num = dot(n, f);
-  if (num == 0) return;
+  if (dot(V3(disc.normal), f) == 0) return;  // as given: rounding the unit normal would move the plane
   V3 e1 = orthogonal(n), e2 = cross(n, e1);
   V3 U = (num * e1 - dot(f, e1) * n) / (r * num), V = (num * e2 - dot(f, e2) * n) / (r * num), m = n / num;
   RowWriter& rows = out.disc();

@@ -14,7 +14,7 @@ inline bool planeForms(V3 n, f128 num, const EyeFrame& eye, f128 index, RowWrite
 }
 
 inline void packEye(const InfinitePlane& plane, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  V3 n = normalized(V3(plane.normal));
+  V3 n(plane.normal);  // as given: a rounded unit normal would put an eye in the plane beside it
   planeForms(n, dot(n, eye.relative(plane.origin)), eye, index, out.plane());
 }
 
