@@ -9,6 +9,7 @@
 #include "host/cli/options.h"
 #include "host/cli/verbs.h"
 #include "host/error.h"
+#include "host/image/output_file.h"
 
 namespace solidcast::cli {
 namespace {
@@ -117,11 +118,20 @@ int run(int argc, char** argv) {
   return static_cast<int>(Exit::fine);
 }
 
+/// Ctrl-C and the like end the program as ever, but leave no half-written file.
+void tidyUpAndEnd(int number) {
+  removeUnfinishedOutputs();
+  std::signal(number, SIG_DFL);
+  std::raise(number);
+}
+
 }  // namespace
 }  // namespace solidcast::cli
 
 int main(int argc, char** argv) {
   using namespace solidcast;
+  for (int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, cli::tidyUpAndEnd);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is a failed write
   std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is a failed write, not a death in silence
   try {
     return cli::run(argc, argv);
