@@ -2,12 +2,20 @@
 // Primary rays of a camera: search, integrate, store. One invocation does four neighbouring pixels of a row, so that
 // one load of a solid serves four rays.
 //
+// Written so that llvmpipe compiles it well (docs/performance-notes.md has what each of these is worth):
+//  - No branch encloses a load of a uniform or push constant, not even an early return: under one it becomes a gather,
+//    lane by lane. The buffers hold whole workgroups instead.
+//  - Loops over the rays are unrolled, so that the rays' state lives in registers.
+//  - The first value stored depends on the whole search. What only later stores need would be computed after the
+//    first store's loop over the lanes, with everything it is made of kept in memory until then.
+//
 // Compiled in variants (shaders/CMakeLists.txt):
 //   METHOD     0 naive, 1 fast, 2 exact           ARITHMETIC  of `real`, see numeric.glsl
 //   CAMERA     0 perspective, 1 environment, 2 orthographic
 //   STORAGE    0 records in uniform buffers, 1 in storage buffers and searched in portions
 //   HITS       1: also normals, local coordinates and hit points
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
 #if METHOD == 2
 #define EXACT
@@ -44,7 +52,7 @@ layout(constant_id = 29) const bool HITS_IN_DOUBT = false;  // arithmetic too co
 layout(push_constant) uniform Portion {
   uint wholeWidth, wholeHeight;  // of the whole image, in pixels
   uint firstX, firstY;           // of this band, in the whole image
-  uint width, rows, stride;      // of this band; stride = words of a row of one number, a multiple of 4
+  uint rows, stride;             // of this band's planes (stride in words), both in whole workgroups
   uint stage;                    // bit 0: first portion of the solids, bit 1: last
   uint sampleX, sampleY;         // which sample of every pixel
   uint count[7], firstRow[7];    // STORAGE: this portion's solids
@@ -59,7 +67,7 @@ layout(set = 0, binding = 3, std430) buffer Image { uvec4 image[]; };
 layout(set = 0, binding = 4, std430) buffer Doubts {  // rays for the second pass
   uint doubtCount;
   uint doubtCapacity;
-  uint doubts[];  // pixel of the band
+  uint doubts[];  // pixel / 4 in the buffers' grid, times 16, plus a bit for each of the four
 };
 #endif
 #if CAMERA == 1
@@ -138,8 +146,9 @@ CameraRay cameraRay(uint column, uint row) {
 #if CAMERA == 0
   ray.direction = real3(mul(number(gridX(column)), step.x), mul(number(gridY(row)), step.y), number(-1.0));
 #elif CAMERA == 1
-  real4 lon = ROW(angles, column);
-  real4 lat = ROW(angles, portion.wholeWidth * SAMPLES + row);
+  uint columns = portion.wholeWidth * SAMPLES, lines = portion.wholeHeight * SAMPLES;  // beyond them: buffer's margin
+  real4 lon = ROW(angles, column < columns ? column : columns - 1u);
+  real4 lat = ROW(angles, columns + (row < lines ? row : lines - 1u));
   ray.direction = real3(mul(lat.x, lon.y), lat.y, negate(mul(lat.x, lon.x)));
 #else
   ray.origin = combine(mul(number(gridX(column)), step.x), mul(number(gridY(row)), step.y), number(0.0));
@@ -160,6 +169,11 @@ struct Result {
 };
 
 #define RAYS 4
+#if ARITHMETIC == 2
+#define UNROLL  // unrolled, double-float arithmetic takes seconds to compile
+#else
+#define UNROLL [[unroll]]
+#endif
 
 void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAYS]) {
   Found best[RAYS];
@@ -170,7 +184,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
 #else
   EyeRay ray[RAYS];
 #endif
-  for (int k = 0; k < RAYS; ++k) {
+  UNROLL for (int k = 0; k < RAYS; ++k) {
     CameraRay camera = cameraRay(column[k], row);
 #if METHOD == 0
     vec3 eye = vec3(viewRow(1u).w, viewRow(2u).w, viewRow(3u).w);
@@ -214,7 +228,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
   if (KIND##_COUNT > 0u) {                                                    \
     uint at = FIRST_ROW(NUMBER, next);                                        \
     for (uint i = 0u; i < COUNT(NUMBER, KIND); ++i) {                         \
-      for (int k = 0; k < RAYS; ++k) TEST(kind, at);                          \
+      UNROLL for (int k = 0; k < RAYS; ++k) TEST(kind, at);                          \
       at += ROWS(EYE_ROWS, WORLD_ROWS);                                       \
     }                                                                         \
     next = at;                                                                \
@@ -222,7 +236,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
 #include "solids.def"
 #undef SOLID
 
-  for (int k = 0; k < RAYS; ++k) {
+  UNROLL for (int k = 0; k < RAYS; ++k) {
 #if STORAGE
     if ((portion.stage & 2u) == 0u) state[pixel + uint(k)] = keep(best[k]);
 #endif
@@ -236,7 +250,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
     result[k].point = point;
     result[k].direction = direction[k];
 #else
-    result[k].hit = less(number(0.0), best[k].s);
+    result[k].hit = atLeast(best[k].index, number(0.0));  // as s > 0, but see above for the first value stored
     result[k].distance = toFloat(mul(quotient(root(ray[k].squared), best[k].s), viewRow(0u).z));
     precise float cosine = toFloat(best[k].cosine) / sqrt(toFloat(ray[k].squared));
     result[k].cosine = cosine;
@@ -263,7 +277,6 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
 
 // --- radiance -----------------------------------------------------------------------------------------------------
 vec3 radiance(Result result) {
-  if (!result.hit) return vec3(0.0);
   Shading shading;
   shading.distance = result.distance;
   shading.cosine = TWO_SIDED ? abs(result.cosine) : result.cosine > 0.0 ? result.cosine : 0.0;
@@ -275,7 +288,7 @@ vec3 radiance(Result result) {
   if (INTEGRATOR_NUMBER == name##_number) colour = name##_radiance(shading, parameters);
 #include "integrators.def"
 #undef INTEGRATOR
-  return colour;
+  return mix(vec3(0.0), colour, bvec3(result.hit));
 }
 
 uint level(float v) {
@@ -289,32 +302,33 @@ uint level(float v) {
 
 void main() {
   uint x = gl_GlobalInvocationID.x * 4u, y = gl_GlobalInvocationID.y;
-  if (x >= portion.width || y >= portion.rows) return;
   uint pixel = y * portion.stride + x;
+  uint base = pixel / 4u, plane = portion.stride * portion.rows / 4u;
+  bool otherSamples = SAMPLES > 1u && (portion.sampleX | portion.sampleY) != 0u;
+#ifdef EXACT
+  uint four = base, capacity = doubtCapacity;
+#endif
 
   uint column[RAYS];
-  for (int k = 0; k < RAYS; ++k) column[k] = (portion.firstX + x + uint(k)) * SAMPLES + portion.sampleX;
+  UNROLL for (int k = 0; k < RAYS; ++k) column[k] = (portion.firstX + x + uint(k)) * SAMPLES + portion.sampleX;
   Result result[RAYS];
   search(column, (portion.firstY + y) * SAMPLES + portion.sampleY, pixel, result);
 #if STORAGE
   if ((portion.stage & 2u) == 0u) return;
 #endif
   vec3 colour[RAYS];
-  for (int k = 0; k < RAYS; ++k) {
+  uint doubtful = 0u;
+  UNROLL for (int k = 0; k < RAYS; ++k) {
 #ifdef EXACT
-    if (result[k].doubtful && x + uint(k) < portion.width) {
-      uint place = atomicAdd(doubtCount, 1u);
-      if (place < doubtCapacity) doubts[place] = y * portion.width + x + uint(k);
-      result[k].hit = false;  // the second pass adds it
-    }
+    doubtful |= result[k].doubtful ? 1u << k : 0u;
+    result[k].hit = result[k].hit && !result[k].doubtful;  // the second pass adds it
 #endif
     colour[k] = radiance(result[k]);
   }
 
-  uint base = pixel / 4u, plane = portion.stride * portion.rows / 4u;
   if ((WANTED & RGB8) != 0u) {
     uvec4 packed;
-    for (int k = 0; k < RAYS; ++k)
+    UNROLL for (int k = 0; k < RAYS; ++k)
       packed[k] = level(colour[k].r) | level(colour[k].g) << 8 | level(colour[k].b) << 16;
     image[base] = packed;
     base += plane;
@@ -322,27 +336,33 @@ void main() {
   if ((WANTED & RADIANCE) != 0u) {
     for (int c = 0; c < 3; ++c) {
       precise vec4 sum = vec4(colour[0][c], colour[1][c], colour[2][c], colour[3][c]);
-      if (SAMPLES > 1u && (portion.sampleX | portion.sampleY) != 0u) sum += uintBitsToFloat(image[base]);
+      if (otherSamples) sum += uintBitsToFloat(image[base]);
       image[base] = floatBitsToUint(sum);  // of all samples; the host divides
       base += plane;
     }
   }
   if ((WANTED & DISTANCE) != 0u) {
     vec4 t;
-    for (int k = 0; k < RAYS; ++k) t[k] = result[k].hit ? result[k].distance : uintBitsToFloat(0x7f800000u);
+    UNROLL for (int k = 0; k < RAYS; ++k) t[k] = result[k].hit ? result[k].distance : uintBitsToFloat(0x7f800000u);
     image[base] = floatBitsToUint(t);
     base += plane;
   }
   if ((WANTED & SOLID_INDEX) != 0u) {
     uvec4 index;
-    for (int k = 0; k < RAYS; ++k) index[k] = result[k].hit ? uint(result[k].index) : 0xffffffffu;
+    UNROLL for (int k = 0; k < RAYS; ++k) index[k] = result[k].hit ? uint(result[k].index) : 0xffffffffu;
     image[base] = index;
     base += plane;
   }
+#ifdef EXACT
+  if (doubtful != 0u) {
+    uint place = atomicAdd(doubtCount, 1u);
+    if (place < capacity) doubts[place] = four << 4 | doubtful;
+  }
+#endif
 #if HITS
   vec3 normal[RAYS], local[RAYS], position[RAYS];
   vec3 eye = METHOD == 0 ? vec3(0.0) : vec3(viewRow(1u).w, viewRow(2u).w, viewRow(3u).w);
-  for (int k = 0; k < RAYS; ++k) {
+  UNROLL for (int k = 0; k < RAYS; ++k) {
     normal[k] = local[k] = position[k] = vec3(0.0);
     if (result[k].hit)
       finish(eye, result[k].point, result[k].direction, result[k].cosine, uint(result[k].index), normal[k], local[k],

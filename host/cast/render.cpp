@@ -22,12 +22,17 @@ double since(Clock::time_point start) {
 
 // pixels.comp: Portion
 struct PixelPush {
-  std::uint32_t wholeWidth, wholeHeight, firstX, firstY, width, rows, stride, stage, sampleX, sampleY;
+  std::uint32_t wholeWidth, wholeHeight, firstX, firstY, rows, stride, stage, sampleX, sampleY;
   SearchPortion search;
 };
 static_assert(sizeof(PixelPush) <= 128);
 
 enum Wanted : std::uint32_t { RGB8 = 1, RADIANCE = 2, DISTANCE = 4, SOLID = 8, NORMAL = 16, LOCAL = 32, POSITION = 64 };
+
+// A workgroup's pixels (pixels.comp: local_size, RAYS). Buffers hold whole workgroups: the shader has no branch for
+// pixels beyond the edge.
+constexpr int groupWidth = 64, groupRows = 4;
+constexpr int padded(int n, int to) { return (n + to - 1) / to * to; }
 
 /// Words a pixel takes in the image buffer; the planes lie one after the other in the order of the bits.
 std::uint32_t wordsOf(std::uint32_t wanted) {
@@ -115,13 +120,13 @@ class Pass {
   /// Bytes of device memory a row of the crop takes, beside the records.
   std::size_t bytesPerRow(int width) const {
     std::size_t state = portions_.size() > 1 ? 48 : 0;
-    return (static_cast<std::size_t>(width) + 3) / 4 * 4 * (wordsOf(wanted_) * 4 + state) + width / 2;
+    return static_cast<std::size_t>(padded(width, groupWidth)) * (wordsOf(wanted_) * 4 + state) + width / 2;
   }
   const Program& program() const { return program_; }
 
   void makeBuffers(int width, int rows) {
-    stride_ = (width + 3) / 4 * 4;
-    std::size_t pixels = static_cast<std::size_t>(stride_) * rows;
+    stride_ = padded(width, groupWidth);
+    std::size_t pixels = static_cast<std::size_t>(stride_) * padded(rows, groupRows);
     buffers_[3] =
         device_.makeBuffer(std::max<std::size_t>(16, pixels * wordsOf(wanted_) * 4), gpu::BufferUse::readback);
     if (exact_) makeDoubts(pixels / 16 + 4096);
@@ -139,15 +144,16 @@ class Pass {
       std::vector<PixelPush> pushes;
       for (std::size_t p = 0; p < portions_.size(); ++p) {
         std::uint32_t stage = (p == 0 ? 1u : 0u) | (p + 1 == portions_.size() ? 2u : 0u);
-        pushes.push_back({u(job_.width), u(job_.height), u(crop.x), u(crop.y + band.firstRow), u(band.width),
-                          u(band.rows), u(stride_), stage, u(sample % samples_), u(sample / samples_), portions_[p]});
+        pushes.push_back({u(job_.width), u(job_.height), u(crop.x), u(crop.y + band.firstRow),
+                          u(padded(band.rows, groupRows)), u(stride_), stage, u(sample % samples_),
+                          u(sample / samples_), portions_[p]});
       }
       std::vector<gpu::Dispatch> dispatches;
       for (const PixelPush& push : pushes)
         dispatches.push_back({&*pipeline_,
                               bound,
                               std::as_bytes(std::span(&push, 1)),
-                              {(u(stride_) / 4 + 15) / 16, (u(band.rows) + 3) / 4, 1}});
+                              {u(stride_ / groupWidth), u(padded(band.rows, groupRows) / groupRows), 1}});
       auto start = Clock::now();
       double ms = device_.run(dispatches);
       if (!warm_) stats_.first_dispatch_ms += since(start);
@@ -157,9 +163,7 @@ class Pass {
       if (!exact_) continue;
       auto doubts = buffers_[4].as<std::uint32_t>();
       if (doubts[0] > capacity_) return;
-      auto& list = doubtful_[static_cast<std::size_t>(sample)];
-      list.assign(doubts.begin() + 2, doubts.begin() + 2 + doubts[0]);
-      std::sort(list.begin(), list.end());
+      doubtful_[static_cast<std::size_t>(sample)] = doubtfulPixels(doubts.subspan(2, doubts[0]), band);
     }
   }
   /// Fills the band's channels; the band's geometry is set already.
@@ -195,12 +199,25 @@ class Pass {
     buffers_[4].as<std::uint32_t>()[1] = capacity_;
   }
 
+  /// Pixels of the band, in order, from entries of pixels.comp's Doubts.
+  std::vector<std::uint32_t> doubtfulPixels(std::span<const std::uint32_t> entries, const Band& band) const {
+    std::vector<std::uint32_t> pixels;
+    for (std::uint32_t entry : entries) {
+      std::uint32_t first = entry / 16 * 4, y = first / u(stride_), x = first % u(stride_);
+      if (y >= u(band.rows)) continue;
+      for (std::uint32_t k = 0; k < 4 && x + k < u(band.width); ++k)
+        if (entry >> k & 1) pixels.push_back(y * u(band.width) + x + k);
+    }
+    std::sort(pixels.begin(), pixels.end());
+    return pixels;
+  }
+
   static std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
 
   template <class T>
   void readPlanes(const std::uint32_t*& plane, int count, const Band& band, std::vector<T>& to) {
     to.resize(static_cast<std::size_t>(band.width) * band.rows * count);
-    for (int c = 0; c < count; ++c, plane += static_cast<std::size_t>(stride_) * band.rows)
+    for (int c = 0; c < count; ++c, plane += static_cast<std::size_t>(stride_) * padded(band.rows, groupRows))
       for (int y = 0; y < band.rows; ++y) {
         const std::uint32_t* row = plane + static_cast<std::size_t>(y) * stride_;
         T* out = to.data() + (static_cast<std::size_t>(y) * band.width) * count + c;
@@ -221,7 +238,7 @@ class Pass {
           out[2] = static_cast<std::uint8_t>(row[x] >> 16);
         }
       }
-      plane += static_cast<std::size_t>(stride_) * band.rows;
+      plane += static_cast<std::size_t>(stride_) * padded(band.rows, groupRows);
     }
     if (wanted_ & RADIANCE) readPlanes(plane, 3, band, band.radiance);
     if (wanted_ & DISTANCE) readPlanes(plane, 1, band, band.distance);
@@ -368,11 +385,12 @@ struct ImageCaster::Impl {
     // The host holds a copy of a band, so half of the budget is the device's; and no band above 64 MiB: nothing is
     // gained by it.
     std::size_t room = std::min<std::size_t>(budget / 2, std::size_t{64} << 20);
-    std::size_t rows = std::min({room / perRow, std::size_t{limits.maxStorageBufferRange} / largest,
-                                 std::size_t{limits.maxWorkGroupCount[1]} * 4, static_cast<std::size_t>(crop.height)});
+    std::size_t groups = std::min({room / (perRow * groupRows), limits.maxStorageBufferRange / (largest * groupRows),
+                                   std::size_t{limits.maxWorkGroupCount[1]}});
+    std::size_t rows = std::min(groups * groupRows, static_cast<std::size_t>(crop.height));
     if (rows == 0)
-      throw Error(Exit::usage, "render: one row of " + std::to_string(crop.width) + " pixels takes " +
-                                   std::to_string(perRow) + " bytes, expected at most " +
+      throw Error(Exit::usage, "render: " + std::to_string(groupRows) + " rows of " + std::to_string(crop.width) +
+                                   " pixels take " + std::to_string(perRow * groupRows) + " bytes, expected at most " +
                                    std::to_string(std::min<std::size_t>(room, limits.maxStorageBufferRange)));
     if (static_cast<int>(rows) < crop.height)
       stats.plan.push_back("in bands of " + std::to_string(rows) + " rows: " + std::to_string(perRow) +
