@@ -31,6 +31,17 @@ Ray128 exactRay(const QueryRay& ray);
 /// centre at (i + 0.5, j + 0.5). Directions are right to about 1e-33; zeros of an axis-parallel camera stay exact.
 Ray128 pixelRay(const Camera& camera, int width, int height, double x, double y);
 
+/// The same for many pixels: what they share is calculated once.
+struct PixelGrid {
+  PixelGrid(const Camera& camera, int width, int height);
+  Ray128 ray(double x, double y) const;
+
+  Camera camera;
+  int width, height;
+  Real3 center{}, forward{}, right{}, upward{};
+  Real halfX = 0, halfY = 0;  // tangents, lengths or radians from the middle to the border
+};
+
 enum class Level : std::uint8_t { extended, binary128, exact };
 
 /// `enough`: t to 2^-48 relative, normal and local to 2^-40; `full`: always by exact arithmetic, all of binary128.

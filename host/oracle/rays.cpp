@@ -30,49 +30,39 @@ Real3 combined(Real a, const Real3& u, Real b, const Real3& v, Real c, const Rea
 
 Real radians(double degrees) { return degrees * (M_PIq / 180); }
 
-struct Frame {
-  Real3 center, forward, right, upward;
-};
-
-template <class C>
-Frame frameOf(const C& camera) {
-  Frame frame;
-  frame.center = widened(camera.center);
-  frame.forward = unit(widened(camera.forward));
-  frame.right = unit(cross(frame.forward, unit(widened(camera.up))));
-  frame.upward = cross(frame.right, frame.forward);
-  return frame;
-}
-
 // x and y run from -1 to 1, y upwards.
-Ray128 rayOf(const PerspectiveCamera& camera, Real x, Real y) {
-  const Frame f = frameOf(camera);
+Ray128 rayOf(const PerspectiveCamera&, const PixelGrid& f, Real x, Real y) {
   Ray128 ray;
   ray.origin = f.center;
-  ray.direction = combined(1, f.forward, x * tanq(radians(camera.horizontalAngle) / 2), f.right,
-                           y * tanq(radians(camera.verticalAngle) / 2), f.upward);
+  ray.direction = combined(1, f.forward, x * f.halfX, f.right, y * f.halfY, f.upward);
   ray.length = length(ray.direction);
   return ray;
 }
 
-Ray128 rayOf(const OrthographicCamera& camera, Real x, Real y) {
-  const Frame f = frameOf(camera);
+Ray128 rayOf(const OrthographicCamera& camera, const PixelGrid& f, Real x, Real y) {
   Ray128 ray;
-  ray.origin = combined(1, f.center, x * camera.scaleX / 2, f.right, y * camera.scaleY / 2, f.upward);
+  ray.origin = combined(1, f.center, x * f.halfX, f.right, y * f.halfY, f.upward);
   ray.direction = widened(camera.forward);  // not normalised: exact
   ray.length = length(ray.direction);
   return ray;
 }
 
-Ray128 rayOf(const EnvironmentCamera& camera, Real x, Real y) {
-  const Frame f = frameOf(camera);
-  const Real theta = x * radians(camera.horizontalAngle) / 2, phi = y * radians(camera.verticalAngle) / 2;
+Ray128 rayOf(const EnvironmentCamera&, const PixelGrid& f, Real x, Real y) {
+  const Real theta = x * f.halfX, phi = y * f.halfY;
   Ray128 ray;
   ray.origin = f.center;
   ray.direction = combined(cosq(phi) * cosq(theta), f.forward, cosq(phi) * sinq(theta), f.right, sinq(phi), f.upward);
   ray.length = length(ray.direction);
   return ray;
 }
+
+struct Halves {
+  Real x, y;
+  explicit Halves(const PerspectiveCamera& c)
+      : x(tanq(radians(c.horizontalAngle) / 2)), y(tanq(radians(c.verticalAngle) / 2)) {}
+  explicit Halves(const OrthographicCamera& c) : x(Real(c.scaleX) / 2), y(Real(c.scaleY) / 2) {}
+  explicit Halves(const EnvironmentCamera& c) : x(radians(c.horizontalAngle) / 2), y(radians(c.verticalAngle) / 2) {}
+};
 
 // Unit of the last place of fp32 at x.
 Real unitAt(Real x) {
@@ -99,9 +89,26 @@ Ray128 exactRay(const QueryRay& ray) {
   return result;
 }
 
-Ray128 pixelRay(const Camera& camera, int width, int height, double x, double y) {
+PixelGrid::PixelGrid(const Camera& given, int w, int h) : camera(given), width(w), height(h) {
+  std::visit(
+      [&](const auto& c) {
+        center = widened(c.center);
+        forward = unit(widened(c.forward));
+        right = unit(cross(forward, unit(widened(c.up))));
+        upward = cross(right, forward);
+        const Halves halves(c);
+        halfX = halves.x, halfY = halves.y;
+      },
+      camera);
+}
+
+Ray128 PixelGrid::ray(double x, double y) const {
   const Real across = 2 * static_cast<Real>(x) / width - 1, up = 1 - 2 * static_cast<Real>(y) / height;
-  return std::visit([&](const auto& c) { return rayOf(c, across, up); }, camera);
+  return std::visit([&](const auto& c) { return rayOf(c, *this, across, up); }, camera);
+}
+
+Ray128 pixelRay(const Camera& camera, int width, int height, double x, double y) {
+  return PixelGrid(camera, width, height).ray(x, y);
 }
 
 bool beyondFloat(Real truth) { return (truth < 0 ? -truth : truth) >= Real(0x1.ffffffp127); }
