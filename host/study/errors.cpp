@@ -32,9 +32,10 @@ std::vector<Verdict> judge(const World& world, std::span<const QueryRay> rays) {
 std::vector<Verdict> judge(const Scene& scene) {
   const auto width = static_cast<std::size_t>(scene.width);
   std::vector<Verdict> all(width * static_cast<std::size_t>(scene.height));
+  const oracle::PixelGrid grid(scene.camera, scene.width, scene.height);
   inParallel(all.size(), [&](std::size_t i) {
     const double x = static_cast<double>(i % width) + 0.5, y = static_cast<double>(i / width) + 0.5;
-    all[i] = verdictOf(oracle::cast(scene.world, oracle::pixelRay(scene.camera, scene.width, scene.height, x, y)));
+    all[i] = verdictOf(oracle::cast(scene.world, grid.ray(x, y)));
   });
   return all;
 }

@@ -50,21 +50,19 @@ whether the method also gave a <b>wrong decision</b> (a miss for a hit, a hit fo
   s += "<li>" + legendMark(0, "#555") + " none</li><li>" + legendMark(1, "#555") +
        " only where changing the input by at most " + number(kNearUlps) +
        " ulp of fp32 could change the true answer</li><li>" + legendMark(2, "#555") +
-       " elsewhere too, or t was no number: the error is then unbounded, and the mark stands at &#8734;</li></ul>"
-       "<ul class=\"legend\">";
-  for (const Way& way : kWays)
-    s += "<li>" + legendMark(0, way.colour) + " <b style=\"color:" + way.colour + "\">" + way.letter + "</b> " +
-         way.label + "</li>";
+       " elsewhere too, or t was no number: the error is then unbounded, and the mark stands at &#8734;</li></ul>" +
+       methodsKey();
   return s +
-         "</ul><p>Point at a mark to see its numbers. Every number is in the table below its plots, and in study.csv "
+         "<p>Point at a mark to see its numbers. Every number is in the table below its plots, and in study.csv "
          "and study.json beside this page.</p></section>";
 }
 
 std::string methods(const Study& study) {
   std::string s =
-      "<section><h2>The methods, all measurements together</h2><table><thead><tr><th>method</th><th>rays</th>"
+      "<section><h2>The methods, all measurements together</h2><table><thead><tr><th "
+      "class=\"words\">method</th><th>rays</th>"
       "<th>wrong, near an edge</th><th>wrong beyond</th><th>t no number</th><th>largest error of t, ulp</th>"
-      "<th>what it promises</th></tr></thead><tbody>";
+      "<th class=\"words\">what it promises</th></tr></thead><tbody>";
   for (const std::size_t way : study.ways) {
     std::uint64_t rays = 0, near = 0, beyond = 0, notFinite = 0;
     double most = 0;
@@ -140,8 +138,8 @@ std::string kindSection(const Study& study, const std::string& kind) {
     s += "<h3>Where each method falls off</h3><p>Each plot makes one difficulty harder from left to right. Above: the "
          "error "
          "that 99 % of the hits stay below (full line) and the largest error (dotted). Below: the share of wrong "
-         "decisions.</p><div class=\"plots\">" +
-         plots + "</div>";
+         "decisions.</p>" +
+         methodsKey() + "<div class=\"plots\">" + plots + "</div>";
   for (const Section section : {Section::rays, Section::pixels}) {
     const auto all = rowsOf(study, section, kind, "");
     if (all.empty()) continue;
@@ -204,15 +202,16 @@ std::string catalogueSection(const Study& study) {
     }
     body += "</tr>";
   }
-  s += "<table><thead><tr><th>method</th><th>right, within 1 ulp</th><th>right, but further off</th><th>wrong "
+  s += "<table><thead><tr><th class=\"words\">method</th><th>right, within 1 ulp</th><th>right, but further "
+       "off</th><th>wrong "
        "decision</th></tr>"
        "</thead><tbody>";
   for (const auto& [way, n] : counts)
     s += "<tr><th>" + wayName(way) + "</th><td>" + std::to_string(n[0]) + "</td><td>" + std::to_string(n[1]) +
          "</td><td>" + std::to_string(n[2]) + "</td></tr>";
   s += "</tbody></table><details open><summary>All cases</summary><table "
-       "class=\"cases\"><thead><tr><th>case</th><th>solid</th>"
-       "<th>what is extreme</th><th>truth</th>";
+       "class=\"cases\"><thead><tr><th class=\"words\">case</th><th class=\"words\">solid</th>"
+       "<th class=\"words\">what is extreme</th><th>truth</th>";
   for (const std::size_t way : study.ways) s += "<th>" + wayName(way) + "</th>";
   return s + "</tr></thead><tbody>" + body + "</tbody></table></details></section>";
 }

@@ -101,7 +101,7 @@ std::string table(const std::vector<const Row*>& rows) {
     const Errors& e = row->errors;
     const Timing& t = row->timing;
     s += std::string(row->family == last ? "<tr>" : "<tr class=\"first\">") + "<th>" +
-         (row->family == last ? "" : escaped(row->family)) + "</th><td class=\"words\">" + wayName(row->way) +
+         (row->family == last ? "" : escaped(row->family)) + "</th><td class=\"way\">" + wayName(row->way) +
          "</td><td>" + grouped(e.rays) + "</td><td>" + grouped(e.agreedHits) + "</td>";
     for (const double v : {e.p50, e.p99, e.p999, e.max}) s += "<td>" + number(v) + "</td>";
     s += count(e.misses) + count(e.falseHits) + count(e.otherSolid) + count(e.notFinite) + count(e.wrongNear) +
@@ -144,6 +144,13 @@ std::string caseField(const Row& row) {
   return "<td style=\"background:" + colour + (e.max > 3e3 ? ";color:#fff" : "") + "\">" + number(e.max) + "</td>";
 }
 
+std::string methodsKey() {
+  std::string s = "<ul class=\"legend\">";
+  for (std::size_t way = 0; way < kWayCount; ++way)
+    s += "<li>" + legendMark(0, kWays[way].colour) + " " + wayName(way) + "</li>";
+  return s + "</ul>";
+}
+
 std::string colourKey() {
   std::string s = "<p class=\"colours\">";
   for (const auto& [ulps, label] : {std::pair{1.0, "&#8804; 1 ulp"},
@@ -175,11 +182,11 @@ figcaption{font-size:13px;color:#556;line-height:1.35;padding:4px 4px 0}
 .grid{stroke:#e6e9ef;stroke-width:1}.one{stroke:#1d2430;stroke-width:1.2}.axis{stroke:#99a;stroke-width:1}.lane{stroke:#f6dada;stroke-width:18}
 .reach{stroke-width:2;stroke-opacity:.65}.spread{stroke-width:3;stroke-opacity:.55}.front{fill:none;stroke:#aab;stroke-width:1.4;stroke-dasharray:5 3}
 .mark{stroke:#fff;stroke-width:1.4}.cross{fill:none;stroke-width:3}.crossback{fill:none;stroke:#fff;stroke-width:6}
-.curve{fill:none;stroke-width:2}.curve.most{stroke-width:1.4;stroke-dasharray:2 3}
+.curve{fill:none;stroke-opacity:.85}.curve.most{stroke-width:1.4;stroke-dasharray:2 3}
 .key{width:18px;height:18px;vertical-align:-4px}.legend{list-style:none;padding:0;display:flex;flex-wrap:wrap;gap:4px 22px;margin:6px 0}
 table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums;margin:8px 0}th,td{padding:3px 8px;text-align:right}
 thead th{border-bottom:1px solid #99a;vertical-align:bottom;font-weight:600}tbody th{text-align:left;font-weight:600}tr.first>*{border-top:1px solid #dde1e8}
-.words{text-align:left}.zero{color:#aab}.bad{font-weight:600}.fail{background:#e60014;color:#fff}.wide{overflow-x:auto}
+th.words,.words{text-align:left}.words b{white-space:nowrap}table .way{white-space:nowrap;text-align:left}.zero{color:#aab}.bad{font-weight:600}.fail{background:#e60014;color:#fff}.wide{overflow-x:auto}
 .map td{width:15px;min-width:15px;padding:1px 0;text-align:center;border:1px solid #e1e5ec;font-size:12px}.map .none{border:none}
 .map thead th{padding:1px 0;text-align:center;font-size:12px}.map thead tr:first-child th{border:none;padding:2px 6px}
 .cases td,.cases th{border-bottom:1px solid #eceff4}.colours span{display:inline-block;font-size:12px;padding:1px 9px;border:1px solid #dde1e8}

@@ -19,6 +19,8 @@ std::string table(const std::vector<const Row*>& rows);
 /// A field of the map of failures, and of the table of cases.
 std::string errorField(const Row& row);
 std::string caseField(const Row& row);
+/// Legends: colours of methods, colours of errors.
+std::string methodsKey();
 std::string colourKey();
 
 std::string styleSheet();

@@ -23,7 +23,8 @@ constexpr std::array<Colour, 5> kScale{
 constexpr Colour kNothing{222, 222, 218}, kWrong{230, 0, 20};
 
 Colour colourOf(double ulps) {
-  const double at = ulps <= 1 ? 0 : std::min(1.0, std::log10(ulps) / 6) * (kScale.size() - 1);
+  if (ulps <= 1) return {255, 255, 255};
+  const double at = std::min(1.0, std::log10(ulps) / 6) * (kScale.size() - 1);
   const auto low = static_cast<std::size_t>(at);
   const std::size_t high = std::min(low + 1, kScale.size() - 1);
   Colour c;

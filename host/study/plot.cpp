@@ -205,7 +205,7 @@ std::string workPrecision(const std::vector<const Row*>& rows, const std::string
 }
 
 std::string difficultyPlot(const Sweep& sweep, const std::vector<const Row*>& rows) {
-  constexpr double left = 50, right = 350, top = 28, middle = 176, upper = 192, bottom = 262;
+  constexpr double left = 58, right = 350, top = 28, middle = 176, upper = 192, bottom = 262;
   const UlpAxis y{middle, top};
   double low = INFINITY, high = 0;
   for (const double v : sweep.values) low = std::min(low, v), high = std::max(high, v);
@@ -235,6 +235,8 @@ std::string difficultyPlot(const Sweep& sweep, const std::vector<const Row*>& ro
               (upper + bottom) / 2);
 
   for (std::size_t way = 0; way < kWayCount; ++way) {
+    // The first of two that lie on each other is larger, so that it shows around the second.
+    const double size = way % 2 == 0 ? 4.6 : 2.6, breadth = way % 2 == 0 ? 5 : 1.8;
     std::string p99, most, wrong, marks;
     for (const double v : sweep.values)
       for (const Row* row : rows) {
@@ -247,14 +249,14 @@ std::string difficultyPlot(const Sweep& sweep, const std::vector<const Row*>& ro
         if (e.agreedHits > 0) to(p99, y.at(e.p99)), to(most, y.at(e.max));
         to(wrong, shareAt(e.wrongShare()));
         marks += "<g>" + tooltip(*row) +
-                 (e.agreedHits > 0 ? format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.8\" fill=\"%s\"/>", px, y.at(e.p99),
-                                            kWays[way].colour)
+                 (e.agreedHits > 0 ? format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\"/>", px, y.at(e.p99),
+                                            size, kWays[way].colour)
                                    : "");
-        marks += format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.8\" fill=\"%s\"/></g>", px, shareAt(e.wrongShare()),
-                        kWays[way].colour);
+        marks += format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\"/></g>", px, shareAt(e.wrongShare()),
+                        size, kWays[way].colour);
       }
     if (marks.empty()) continue;
-    const std::string stroke = format(" stroke=\"%s\"", kWays[way].colour);
+    const std::string stroke = format(" stroke=\"%s\" stroke-width=\"%.1f\"", kWays[way].colour, breadth);
     if (!p99.empty())
       s += "<path class=\"curve\"" + stroke + " d=\"" + p99 + "\"/><path class=\"curve most\"" + stroke + " d=\"" +
            most + "\"/>";
