@@ -37,27 +37,24 @@ struct Options {
   CastingOptions casting;
 };
 
-volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t interrupted = 0;  // the signal's number
+struct sigaction beforeStudy[NSIG];
 
-/// The first Ctrl-C is a wish to end, the second ends at once.
+/// The first Ctrl-C (or kill) is a wish to end; the second does what it did before the study.
 class UntilInterrupt {
  public:
   UntilInterrupt() {
     struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigaction(SIGINT, &action, &before_);
-    sigaction(SIGTERM, &action, &beforeTerm_);
+    action.sa_handler = [](int number) {
+      interrupted = number;
+      sigaction(number, &beforeStudy[number], nullptr);
+    };
+    for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, &beforeStudy[number]);
   }
   ~UntilInterrupt() {
-    sigaction(SIGINT, &before_, nullptr);
-    sigaction(SIGTERM, &beforeTerm_, nullptr);
+    for (const int number : {SIGINT, SIGTERM}) sigaction(number, &beforeStudy[number], nullptr);
   }
   UntilInterrupt(const UntilInterrupt&) = delete;
-
- private:
-  struct sigaction before_ {
-  }, beforeTerm_{};
 };
 
 void write(const std::filesystem::path& path, const std::string& text) {
@@ -129,7 +126,7 @@ void run(const Options& options) {
     writeAll(study, folder);
   }
   note((study.complete ? "wrote " : "interrupted; what was measured is in ") + (folder / "study.html").string());
-  if (!study.complete) throw CLI::RuntimeError(128 + SIGINT);
+  if (!study.complete) throw CLI::RuntimeError(128 + interrupted);
 }
 
 }  // namespace

@@ -233,15 +233,6 @@ std::string times(const Study& study) {
 std::string omissions(const Study& study) {
   std::string s = "<section><h2>Omissions</h2><ul>";
   for (const std::string& line : study.omissions) s += "<li>" + escaped(line) + "</li>";
-  if (!study.sweeps.empty()) s += "<li>Sweeps and the catalogue's cases are measured for error, not for time.</li>";
-  if (!rowsOf(study, Section::pixels, "", "").empty())
-    s += "<li>A family of pixels is one picture of one solid: its numbers vary more with the seed than those of free "
-         "rays, "
-         "which are many solids a family.</li>";
-  s += "<li>Errors are those of t and of the decisions. Normals and local coordinates are left to the tests.</li>";
-  s += "<li>Quantiles are over the hits on which method and truth agree; wrong decisions have no error of t and are "
-       "counted "
-       "by themselves.</li>";
   return s + "</ul></section>";
 }
 

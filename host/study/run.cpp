@@ -246,6 +246,19 @@ void run(gpu::Device& device, Study& study, const Checkpoint& checkpoint) {
   if (!study.device.float64) study.arithmetic64 = "fp64: the device has none";
   if (study.device.limits.timestampPeriod == 0)
     study.omissions.push_back("The device has no timestamps: times are the host's, and contain the submission.");
+  const Request& r = study.request;
+  if (r.sweeps || r.catalogue)
+    study.omissions.push_back("Sweeps and the catalogue's cases are measured for error, not for time.");
+  if (r.families)
+    study.omissions.push_back(
+        "A family of pixels is one picture of one solid: its numbers vary more with the seed than those of free rays, "
+        "which are many solids a family.");
+  study.omissions.push_back(
+      "Errors are those of t and of the decisions; normals and local coordinates are not counted.");
+  study.omissions.push_back(
+      "Quantiles are over the hits on which method and truth agree; a wrong decision has no error of t and is counted "
+      "by "
+      "itself.");
   Run(device, study, checkpoint).all();
   if (!study.complete) study.omissions.push_back("The study was interrupted: what it had measured by then is here.");
 }

@@ -50,7 +50,7 @@ Target planet(double radius, Random& random) {
   const Triple up = random.direction();
   return {Sphere{scaled(-radius, up), radius}, [=](Random& r) {
             const Triple level = across(up, r);
-            const double down = r.decade(-3, 0);
+            const double down = r.chance(0.5) ? r.decade(-3, 0) : r.uniform(0.7, 1);
             return directed(sum(scaled(r.uniform(1, 2), up), scaled(r.uniform(-1, 1), level)),
                             sum(scaled(-down, up), scaled(std::sqrt(1 - down * down), level)));
           }};
