@@ -15,10 +15,16 @@ namespace solidcast {
 
 enum class Method { naive, fast, exact };
 enum class Arithmetic { automatic, fp64, df32 };  // of `exact`
+/// Whether a small scene's records become constants of the pipeline: results do not change, a ray costs about two
+/// thirds, and a scene or camera costs a compilation of its own. automatic: once an ImageCaster has spent as much time
+/// in dispatches as that compilation is expected to take, so that it never costs more than twice the best choice.
+/// always: at once. Neither where it is not possible (bakingMs() in program.h).
+enum class Baking { automatic, always, never };
 
 struct CastOptions {
   Method method = Method::exact;
   Arithmetic arithmetic = Arithmetic::automatic;
+  Baking baking = Baking::automatic;
   std::string shaderFolder{};                         // compile from here instead of the carried modules; "" = carried
   std::size_t memoryBudget = std::size_t{512} << 20;  // bytes for host-visible buffers
 };
@@ -44,7 +50,8 @@ class ImageCaster {
   ~ImageCaster();
   /// Bands come to `sink` from the top down, each small enough for the memory budget.
   void render(const BandSink& sink, const CastProgress& progress = {});
-  /// Only the shader, over the whole crop: nothing is read back. GPU time in ms. For benchmarks.
+  /// Only the shader, over the whole crop: nothing is read back. GPU time in ms. For benchmarks, and therefore baked
+  /// from the first call on where that is possible, unless Baking::never.
   double dispatchOnly();
   const CastStats& stats() const;
 

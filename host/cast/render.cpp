@@ -83,7 +83,8 @@ class Pass {
     stats.flatten_ms += since(start);
 
     start = Clock::now();
-    gpu::Specialisation constants = recordConstants(program_, search, world);
+    gpu::Specialisation& constants = constants_;
+    constants = recordConstants(program_, search, world);
     constants[viewRaws] = static_cast<std::uint32_t>(view.raws);
     constants[integratorNumber] = static_cast<std::uint32_t>(scene.integrator.index());
     constants[twoSided] = job.twoSided;
@@ -95,8 +96,9 @@ class Pass {
         program_.eye() ? static_cast<float>(32 * unitRoundoff(program_.real)) : std::ldexp(1.f, coarse ? -9 : -24);
     constants[doubt] = bits(bound);
     constants[hitsInDoubt] = coarse;
-    std::vector<std::uint32_t> spirv = programSpirv(program_, options);
-    pipeline_.emplace(device.makePipeline(spirv, constants));
+    spirv_ = programSpirv(program_, options);
+    bakingCosts_ = options.baking == Baking::never ? std::nullopt : bakingMs(device.info(), program_, search);
+    if (!bakingCosts_ || options.baking == Baking::automatic) pipeline_.emplace(device.makePipeline(spirv_, constants));
     auto use = program_.storage ? gpu::BufferUse::storage : gpu::BufferUse::uniform;
     buffers_.resize(8);
     if (program_.eye()) buffers_[0] = filledBuffer(device, forms.bytes, use);
@@ -105,9 +107,10 @@ class Pass {
     if (program_.camera == 1) buffers_[5] = filledBuffer(device, view.angles, gpu::BufferUse::storage);
     if (program_.hits)
       buffers_[7] = filledBuffer(device, std::as_bytes(std::span(world.places)), gpu::BufferUse::storage);
+    if (options.baking == Baking::always) bake();
     stats.shader_ms += since(start);
     stats.module += (stats.module.empty() ? "" : ", ") + program_.moduleName();
-    stats.spirvBytes += spirv.size() * 4;
+    stats.spirvBytes += spirv_.size() * 4;
     stats.specialisedSpirvBytes += pipeline_->spirvBytes();
     stats.plan.push_back(why);
     stats.plan.push_back(program_.storage
@@ -134,12 +137,25 @@ class Pass {
       buffers_[6] = device_.makeBuffer(portions_.size() > 1 ? pixels * 48 : 64, gpu::BufferUse::storage);
   }
 
+  /// From now on with the records as constants of the pipeline, if that is possible and not done yet.
+  void bake() {
+    if (!bakingCosts_) return;
+    std::map<std::uint32_t, std::span<const std::byte>> contents;
+    for (std::uint32_t binding : {0u, 1u, 2u})  // world records by index of the hit stay a buffer
+      if (!buffers_[binding].bytes().empty() && !(binding == 1 && program_.hits))
+        contents[binding] = buffers_[binding].bytes();
+    pipeline_.emplace(device_.makePipeline(gpu::baked(spirv_, contents), constants_));
+    stats_.plan.push_back("records baked into the pipeline as constants");
+    bakingCosts_.reset();
+  }
+
   /// Runs the shader over the band and keeps the list of doubts.
   void dispatch(const Band& band, const Crop& crop) {
     if (doubtful_.size() < static_cast<std::size_t>(samples_) * samples_) doubtful_.resize(samples_ * samples_);
     std::vector<const gpu::Buffer*> bound;
     for (const gpu::Buffer& b : buffers_) bound.push_back(b.bytes().empty() ? nullptr : &b);
     for (int sample = 0; sample < samples_ * samples_; ++sample) {
+      if (bakingCosts_ && spent_ > *bakingCosts_) bake();
       if (exact_) buffers_[4].as<std::uint32_t>()[0] = 0;
       std::vector<PixelPush> pushes;
       for (std::size_t p = 0; p < portions_.size(); ++p) {
@@ -156,6 +172,7 @@ class Pass {
                               {u(stride_ / groupWidth), u(padded(band.rows, groupRows) / groupRows), 1}});
       auto start = Clock::now();
       double ms = device_.run(dispatches);
+      if (warm_) spent_ += ms;
       if (!warm_) stats_.first_dispatch_ms += since(start);
       warm_ = true;
       stats_.dispatch_ms += ms;
@@ -335,6 +352,10 @@ class Pass {
   std::uint32_t wanted_ = 0, capacity_ = 0;
   std::vector<SearchPortion> portions_;
   std::optional<gpu::Pipeline> pipeline_;
+  std::vector<std::uint32_t> spirv_;
+  gpu::Specialisation constants_;
+  std::optional<double> bakingCosts_;                 // ms; none: not possible, not wanted, or done
+  double spent_ = 0;                                  // ms of dispatches so far, without the first
   std::vector<gpu::Buffer> buffers_;                  // by binding
   std::vector<std::vector<std::uint32_t>> doubtful_;  // by sample: pixels of the band
   std::optional<SecondPass> second_;
@@ -424,6 +445,7 @@ void ImageCaster::render(const BandSink& sink, const CastProgress& progress) {
 }
 
 double ImageCaster::dispatchOnly() {
+  for (auto& pass : impl_->passes) pass->bake();
   double before = impl_->stats.dispatch_ms;
   impl_->forEachBand([&](Band& band) {
     for (auto& pass : impl_->passes) pass->dispatch(band, impl_->crop);

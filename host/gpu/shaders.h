@@ -1,8 +1,10 @@
 // GLSL to SPIR-V: modules compiled at build time and carried in the binary, or compiled now from a folder that
 // somebody edits.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +39,11 @@ CompiledModule compileText(const std::string& text, const std::string& name, con
 /// functions and buffers gone. Takes well under a millisecond.
 std::vector<std::uint32_t> specialised(std::span<const std::uint32_t> spirv,
                                        const std::vector<std::pair<std::uint32_t, std::uint32_t>>& constants);
+
+/// The module with these contents, by binding, in the place of its uniform buffers (blocks of one array of vec4 or
+/// dvec4), and its loops marked for unrolling. Results do not change; the pipeline serves only these contents.
+std::vector<std::uint32_t> baked(std::span<const std::uint32_t> spirv,
+                                 const std::map<std::uint32_t, std::span<const std::byte>>& contents);
 
 /// Empty, or spirv-val's message.
 std::string validationError(std::span<const std::uint32_t> spirv);

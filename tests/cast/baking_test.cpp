@@ -1,0 +1,94 @@
+// Records baked into the pipeline: no bit of any channel may show it, and the plan says when it happens.
+#include <algorithm>
+
+#include "host/cast/program.h"
+#include "tests/cast/fixture.h"
+
+namespace solidcast {
+namespace {
+
+class BakingTest : public OnDevice, public testing::WithParamInterface<Method> {
+ protected:
+  static bool isBaked(const CastStats& stats) {
+    return std::any_of(stats.plan.begin(), stats.plan.end(),
+                       [](const std::string& line) { return line.find("baked") != std::string::npos; });
+  }
+  static Band whole(ImageCaster& caster) {
+    Band all;
+    caster.render([&](Band& band) {
+      EXPECT_EQ(band.firstRow, 0);
+      all = std::move(band);
+    });
+    return all;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(, BakingTest, testing::ValuesIn(kMethods),
+                         [](const auto& info) { return std::string(nameOf(info.param)); });
+
+TEST_P(BakingTest, DoesNotShow) {
+  for (const std::string name : {"a_solids.json", "quadrics.json", "environment.json", "solids/box.json"}) {
+    const Scene scene = loaded(name);
+    RenderJob job;
+    job.width = 101, job.height = 75;
+    for (const bool hits : {false, true}) {
+      job.channels = allChannels();
+      if (!hits) job.channels.normal = job.channels.local = job.channels.position = false;
+      ImageCaster plain(device(), scene, job, {.method = GetParam(), .baking = Baking::never});
+      ImageCaster baked(device(), scene, job, {.method = GetParam(), .baking = Baking::always});
+      expectSame(whole(baked), whole(plain), name);
+      EXPECT_TRUE(isBaked(baked.stats()));
+      plain.dispatchOnly();
+      EXPECT_FALSE(isBaked(plain.stats()));
+    }
+  }
+}
+
+TEST_P(BakingTest, ComesOnceDispatchesHaveCostAsMuch) {
+  const Scene scene = loaded("solids/sphere.json");
+  RenderJob job;
+  job.width = 640, job.height = 480;
+  job.channels.rgb8 = job.channels.distance = true;
+  ImageCaster caster(device(), scene, job, {.method = GetParam()});
+  const Band first = whole(caster);
+  EXPECT_FALSE(isBaked(caster.stats()));
+  int renders = 1;
+  for (; renders < 2000 && !isBaked(caster.stats()); ++renders) expectSame(whole(caster), first);
+  EXPECT_TRUE(isBaked(caster.stats()));
+  EXPECT_GT(renders, 2);
+  expectSame(whole(caster), first);
+}
+
+TEST_P(BakingTest, BenchmarksAreBakedFromTheStart) {
+  const Scene scene = loaded("solids/sphere.json");
+  RenderJob job;
+  job.width = 64, job.height = 48;
+  job.channels.rgb8 = true;
+  ImageCaster caster(device(), scene, job, {.method = GetParam()});
+  EXPECT_FALSE(isBaked(caster.stats()));
+  EXPECT_GT(caster.dispatchOnly(), 0);
+  EXPECT_TRUE(isBaked(caster.stats()));
+}
+
+TEST(BakingRule, WhereItServes) {
+  gpu::DeviceInfo device;
+  device.name = "llvmpipe (LLVM 15.0.6, 256 bits)";
+  Records few, many;
+  few.count[1] = 9, many.count[1] = 65;
+  Program program;
+  program.real = RealType::f32;
+  const auto fp32 = bakingMs(device, program, few);
+  ASSERT_TRUE(fp32);
+  EXPECT_FALSE(bakingMs(device, program, many));
+  program.real = RealType::f64;
+  ASSERT_TRUE(bakingMs(device, program, few));
+  EXPECT_GT(*bakingMs(device, program, few), *fp32);
+  program.real = RealType::df32;
+  EXPECT_FALSE(bakingMs(device, program, few));
+  program.real = RealType::f32, program.storage = true;
+  EXPECT_FALSE(bakingMs(device, program, few));
+  program.storage = false, device.name = "SwiftShader Device";
+  EXPECT_FALSE(bakingMs(device, program, few));
+}
+
+}  // namespace
+}  // namespace solidcast
