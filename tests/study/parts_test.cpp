@@ -16,18 +16,19 @@ TEST(ErrorSum, CountsEveryKindOfFailure) {
   sum.add(0, 2, {0, 2, 100});                         // right
   sum.add(0, std::nextafter(2.f, 3.f), {0, 2, 100});  // 1 ulp
   sum.add(0, NAN, {0, 2, 100});                       // right solid, t no number
-  sum.add(-1, 0, {0, 2, kNearUlps});                  // missed, near an edge
-  sum.add(0, 2, {-1, 0, kNearUlps * 1.01});           // false hit, beyond
-  sum.add(1, 2, {0, 2, 1e6});                         // another solid
-  sum.add(-1, 0, {-1, 0, 1e6});                       // rightly missed
+  sum.add(-1, 0, {0, 2, 0});
+  sum.add(-1, 0, {0, 2, kNearUlps});         // missed, near an edge
+  sum.add(0, 2, {-1, 0, kNearUlps * 1.01});  // false hit, beyond
+  sum.add(1, 2, {0, 2, 1e6});                // another solid
+  sum.add(-1, 0, {-1, 0, 1e6});              // rightly missed
   const Errors e = sum.result();
-  EXPECT_EQ(e.rays, 7u);
+  EXPECT_EQ(e.rays, 8u);
   EXPECT_EQ(e.agreedHits, 3u);
-  EXPECT_EQ(e.misses, 1u);
+  EXPECT_EQ(e.misses, 2u);
   EXPECT_EQ(e.falseHits, 1u);
   EXPECT_EQ(e.otherSolid, 1u);
   EXPECT_EQ(e.notFinite, 1u);
-  EXPECT_EQ(e.wrongNear, 1u);
+  EXPECT_EQ(e.wrongNear, 2u);
   EXPECT_EQ(e.wrongBeyond, 2u);
   EXPECT_EQ(e.worstMargin, 1e6);
   EXPECT_EQ(e.p50, 1);
