@@ -1,6 +1,8 @@
 #include "reference_cpu/reference.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -83,9 +85,10 @@ QueryHit castOne(const Integrator<T>& integrator, const QueryRay& given) {
                    {T(given.direction[0]), T(given.direction[1]), T(given.direction[2])}};
   const Intersection<T> found = integrator.getIntersection(ray, T(given.tMax));
   QueryHit hit;
-  if (!found) return hit;
+  const float t = found ? static_cast<float>(found.distance()) : std::numeric_limits<float>::infinity();
+  if (std::isinf(t)) return hit;  // none, or beyond the far limit
   hit.index = found.solid()->index;
-  hit.t = static_cast<float>(found.distance());
+  hit.t = t;
   const Vec<T> position = found.hitPoint();
   for (int k = 0; k < 3; ++k) {
     hit.normal[k] = static_cast<float>(found.normal()[k]);

@@ -12,6 +12,7 @@ struct QueryRay {
   float tMax = std::numeric_limits<float>::infinity();
 };
 
+/// What fp32 can hold is the far limit: a hit whose t rounds to infinity counts as none.
 struct QueryHit {
   std::int32_t index = -1;  // of the solid, depth first; -1: no hit
   float t = 0;

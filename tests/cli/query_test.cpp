@@ -66,6 +66,11 @@ TEST_P(Query, TmaxIsStrictAndOfTheRayBeforeTheOption) {
   EXPECT_EQ(Json::parse(query("0 0 5 0 0 -1 0").out).at("hit"), false);
 }
 
+TEST_P(Query, WhatFp32CannotHoldIsBeyondTheFarLimit) {
+  EXPECT_EQ(query("0 0 5 0 0 -1e-37").out.substr(0, 20), "{\"ray\":0,\"hit\":true,");  // t = 4e37
+  EXPECT_EQ(query("0 0 5 0 0 -1e-39").out, "{\"ray\":0,\"hit\":false}\n");             // t would be 4e39
+}
+
 TEST_P(Query, HexAndDecimalInputGiveTheSame) {
   const std::string decimal = query("0.1 -0.25 5 0 0 -1").out;
   EXPECT_EQ(query("0x1.99999ap-4 -0x1p-2 0x1.4p+2 -0x0p0 0X0 -0X1.0P0").out, decimal);

@@ -1,7 +1,9 @@
 // `solidcast render` on both backends: what is written, what is said, and what is left after a failure.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -291,6 +293,16 @@ TEST(RenderCpu, EveryPrecision) {
     EXPECT_EQ(result.code, 0);
     EXPECT_NE(result.err.find(std::string(", ") + precision + ","), std::string::npos) << result.err;
   }
+}
+
+// Coreutils' timeout sends the signal once the picture is under way.
+TEST(RenderCpu, AnInterruptLeavesNoFile) {
+  const Folder folder;
+  const std::string command = "timeout -s INT 1 '" SOLIDCAST_BINARY_DIR "/solidcast' render '" +
+                              bundled("a_solids") + "' --backend cpu --precision f128 --size 20000x20000 -o '" +
+                              folder / "big.png" + "' 2>'" + folder / "messages" + "'";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 124);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"messages"});
 }
 
 TEST(RenderCpu, FailureLeavesAnExistingFileAsItWas) {
