@@ -55,6 +55,7 @@ layout(push_constant) uniform Portion {
   uint rows, stride;             // of this band's planes (stride in words), both in whole workgroups
   uint stage;                    // bit 0: first portion of the solids, bit 1: last
   uint sampleX, sampleY;         // which sample of every pixel
+  uint tileX, tileY;             // STORAGE: first pixel of this dispatch in the band, in whole workgroups
   uint count[7], firstRow[7];    // STORAGE: this portion's solids
 } portion;
 
@@ -302,6 +303,10 @@ uint level(float v) {
 
 void main() {
   uint x = gl_GlobalInvocationID.x * 4u, y = gl_GlobalInvocationID.y;
+#if STORAGE
+  x += portion.tileX;
+  y += portion.tileY;
+#endif
   uint pixel = y * portion.stride + x;
   uint base = pixel / 4u, plane = portion.stride * portion.rows / 4u;
   bool otherSamples = SAMPLES > 1u && (portion.sampleX | portion.sampleY) != 0u;

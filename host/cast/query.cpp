@@ -79,7 +79,7 @@ struct QueryCaster::Impl {
       std::vector<std::uint32_t> spirv = programSpirv(program, options);
       pipeline.emplace(device.makePipeline(spirv, wanted));
       stats.spirvBytes = spirv.size() * 4;
-    stats.specialisedSpirvBytes = pipeline->spirvBytes();
+      stats.specialisedSpirvBytes = pipeline->spirvBytes();
     }
     constants = wanted;
     auto use = storage ? gpu::BufferUse::storage : gpu::BufferUse::uniform;

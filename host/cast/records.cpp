@@ -89,12 +89,21 @@ Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
   bool grazing = false;
   EyeWriters out{rows.data(), &grazing};
   bool onFace = false;
+  std::vector<std::array<std::uint32_t, 2>> places;
   for (std::size_t i = 0; i < world.solids.size(); ++i) {
     const Shape& shape = world.solids[i].shape;
+    std::array<std::size_t, kindCount> before{};
+    for (std::size_t k = 0; k < kindCount; ++k) before[k] = rows[k].rows();
     std::visit([&](const auto& s) { packEye(s, eye, static_cast<double>(i), out); }, shape);
+    std::uint32_t kind = 0;
+    while (kind < kindCount && rows[kind].rows() == before[kind]) ++kind;
+    places.push_back({kind, kind < kindCount ? static_cast<std::uint32_t>(before[kind]) : 0});
     if (const auto* box = std::get_if<AABox>(&shape)) onFace = onFace || eyeOnFacePlane(*box, eye);
   }
   Records records = joined(rows, true);
+  for (auto& place : places)
+    if (place[0] < kindCount) place[1] += records.firstRow[place[0]];
+  records.places = std::move(places);
   records.boxOnFace = onFace;
   records.grazing = grazing;
   return records;

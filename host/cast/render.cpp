@@ -10,6 +10,7 @@
 
 #include "host/cast/program.h"
 #include "host/cast/second_pass.h"
+#include "host/cast/tiles.h"
 #include "host/error.h"
 
 namespace solidcast {
@@ -22,7 +23,7 @@ double since(Clock::time_point start) {
 
 // pixels.comp: Portion
 struct PixelPush {
-  std::uint32_t wholeWidth, wholeHeight, firstX, firstY, rows, stride, stage, sampleX, sampleY;
+  std::uint32_t wholeWidth, wholeHeight, firstX, firstY, rows, stride, stage, sampleX, sampleY, tileX, tileY;
   SearchPortion search;
 };
 static_assert(sizeof(PixelPush) <= 128);
@@ -80,6 +81,8 @@ class Pass {
         std::max(forms.bytes.size(), world.bytes.size()) > limits.maxUniformBufferRange || search.solids() > 4096;
     View view = viewRows(scene, eye, job.width, job.height, samples_, program_.real);
     portions_ = program_.storage ? portions(search) : std::vector<SearchPortion>(1);
+    // finish.glsl looks free rays' solids up in the records that they are searched in: those stay whole.
+    if (program_.storage && (program_.eye() || !program_.hits)) tiledSearch_ = search;
     stats.flatten_ms += since(start);
 
     start = Clock::now();
@@ -149,8 +152,33 @@ class Pass {
     bakingCosts_.reset();
   }
 
+  /// Tiles of the band and their records, where the scene is large enough to have them.
+  void prepareTiles(const Band& band, const Crop& crop) {
+    if (!tiledSearch_ || tiledRow_ == band.firstRow) return;
+    auto start = Clock::now();
+    tiledRow_ = band.firstRow;
+    tiles_.clear();
+    TileGrid grid{{crop.x, crop.y + band.firstRow, band.width, band.rows}, groupWidth, 4 * groupRows};
+    while (std::int64_t{grid.across()} * grid.down() > 1024 && grid.tileHeight < band.rows) grid.tileHeight *= 2;
+    TileLists lists = tileLists(scene_, job_.width, job_.height, samples_, grid);
+    const auto& limits = device_.info().limits;
+    auto tiled = tiledRecords(lists, grid, *tiledSearch_, limits.maxStorageBufferRange);
+    std::span<const std::byte> bytes = tiled ? std::span<const std::byte>(tiled->bytes) : tiledSearch_->bytes;
+    buffers_[program_.eye() ? 0 : 1] = filledBuffer(device_, bytes, gpu::BufferUse::storage);
+    if (tiled) tiles_ = std::move(tiled->tiles);
+    tileRows_ = grid.tileHeight;
+    if (band.firstRow == 0)
+      stats_.plan.push_back(tiled ? "searched by screen tiles of " + std::to_string(groupWidth) + "x" +
+                                        std::to_string(tileRows_) + " pixels: " + std::to_string(bytes.size()) +
+                                        " bytes of records, " + std::to_string(lists.everywhere.size()) +
+                                        " solid(s) in every tile"
+                                  : "not by screen tiles: their records would not fit a storage buffer");
+    stats_.flatten_ms += since(start);
+  }
+
   /// Runs the shader over the band and keeps the list of doubts.
   void dispatch(const Band& band, const Crop& crop) {
+    prepareTiles(band, crop);
     if (doubtful_.size() < static_cast<std::size_t>(samples_) * samples_) doubtful_.resize(samples_ * samples_);
     std::vector<const gpu::Buffer*> bound;
     for (const gpu::Buffer& b : buffers_) bound.push_back(b.bytes().empty() ? nullptr : &b);
@@ -158,18 +186,25 @@ class Pass {
       if (bakingCosts_ && spent_ > *bakingCosts_) bake();
       if (exact_) buffers_[4].as<std::uint32_t>()[0] = 0;
       std::vector<PixelPush> pushes;
-      for (std::size_t p = 0; p < portions_.size(); ++p) {
-        std::uint32_t stage = (p == 0 ? 1u : 0u) | (p + 1 == portions_.size() ? 2u : 0u);
-        pushes.push_back({u(job_.width), u(job_.height), u(crop.x), u(crop.y + band.firstRow),
-                          u(padded(band.rows, groupRows)), u(stride_), stage, u(sample % samples_),
-                          u(sample / samples_), portions_[p]});
-      }
+      std::vector<int> heights;
+      auto push = [&](int x, int y, int rows, const std::vector<SearchPortion>& search) {
+        for (std::size_t p = 0; p < search.size(); ++p) {
+          std::uint32_t stage = (p == 0 ? 1u : 0u) | (p + 1 == search.size() ? 2u : 0u);
+          pushes.push_back({u(job_.width), u(job_.height), u(crop.x), u(crop.y + band.firstRow),
+                            u(padded(band.rows, groupRows)), u(stride_), stage, u(sample % samples_),
+                            u(sample / samples_), u(x), u(y), search[p]});
+          heights.push_back(rows);
+        }
+      };
+      int rows = padded(band.rows, groupRows);
+      for (const TileSearch& tile : tiles_) push(tile.x, tile.y, std::min(tileRows_, rows - tile.y), tile.portions);
+      if (tiles_.empty()) push(0, 0, rows, portions_);
       std::vector<gpu::Dispatch> dispatches;
-      for (const PixelPush& push : pushes)
+      for (std::size_t i = 0; i < pushes.size(); ++i)
         dispatches.push_back({&*pipeline_,
                               bound,
-                              std::as_bytes(std::span(&push, 1)),
-                              {u(stride_ / groupWidth), u(padded(band.rows, groupRows) / groupRows), 1}});
+                              std::as_bytes(std::span(&pushes[i], 1)),
+                              {tiles_.empty() ? u(stride_ / groupWidth) : 1u, u(heights[i] / groupRows), 1}});
       auto start = Clock::now();
       double ms = device_.run(dispatches);
       if (warm_) spent_ += ms;
@@ -351,6 +386,9 @@ class Pass {
   int samples_ = 1, stride_ = 0;
   std::uint32_t wanted_ = 0, capacity_ = 0;
   std::vector<SearchPortion> portions_;
+  std::optional<Records> tiledSearch_;  // what tiles are made from
+  std::vector<TileSearch> tiles_;       // of the band that starts at tiledRow_; empty: the whole band at once
+  int tiledRow_ = -1, tileRows_ = 0;
   std::optional<gpu::Pipeline> pipeline_;
   std::vector<std::uint32_t> spirv_;
   gpu::Specialisation constants_;

@@ -215,4 +215,46 @@ TileLists tileLists(const Scene& scene, int width, int height, int samples, cons
   return lists;
 }
 
+std::optional<TiledRecords> tiledRecords(const TileLists& lists, const TileGrid& grid, const Records& search,
+                                         std::size_t limit) {
+  std::size_t rows = 0, entries = 0;
+  for (std::size_t k = 0; k < kindCount; ++k) rows += std::size_t{search.count[k]} * search.rowsPer[k];
+  if (rows == 0) return std::nullopt;
+  const std::size_t rowBytes = search.bytes.size() / rows, tiles = lists.first.size() - 1;
+  auto bytesOf = [&](std::uint32_t solid) {
+    std::uint32_t kind = search.places[solid][0];
+    return kind < kindCount ? search.rowsPer[kind] * rowBytes : 0;
+  };
+  for (std::uint32_t solid : lists.solids) entries += bytesOf(solid);
+  for (std::uint32_t solid : lists.everywhere) entries += bytesOf(solid) * tiles;
+  if (entries > limit) return std::nullopt;
+
+  TiledRecords tiled;
+  tiled.bytes.reserve(entries);
+  std::array<std::vector<std::uint32_t>, kindCount> byKind;  // first rows of a tile's solids
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    for (auto& list : byKind) list.clear();
+    auto add = [&](std::uint32_t solid) {
+      auto [kind, row] = search.places[solid];
+      if (kind < kindCount) byKind[kind].push_back(row);
+    };
+    for (std::uint32_t solid : lists.everywhere) add(solid);
+    for (std::size_t i = lists.first[tile]; i < lists.first[tile + 1]; ++i) add(lists.solids[i]);
+    Records here;
+    here.rowsPer = search.rowsPer;
+    for (std::size_t k = 0; k < kindCount; ++k) {
+      here.count[k] = static_cast<std::uint32_t>(byKind[k].size());
+      here.firstRow[k] = static_cast<std::uint32_t>(tiled.bytes.size() / rowBytes);
+      for (std::uint32_t row : byKind[k]) {
+        auto from = search.bytes.begin() + static_cast<std::ptrdiff_t>(row * rowBytes);
+        tiled.bytes.insert(tiled.bytes.end(), from, from + static_cast<std::ptrdiff_t>(search.rowsPer[k] * rowBytes));
+      }
+    }
+    auto across = static_cast<std::size_t>(grid.across());
+    tiled.tiles.push_back({static_cast<int>(tile % across) * grid.tileWidth,
+                           static_cast<int>(tile / across) * grid.tileHeight, portions(here)});
+  }
+  return tiled;
+}
+
 }  // namespace solidcast

@@ -3,8 +3,10 @@
 // solid's true projection always lists it.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "host/cast/program.h"
 #include "host/cast/records.h"
 #include "host/image/band.h"
 #include "host/scene/world.h"
@@ -24,6 +26,20 @@ struct TileLists {
   std::vector<std::uint32_t> solids;      // indices into World::solids, ascending in each tile
   std::vector<std::uint32_t> everywhere;  // unbounded or too large to be worth listing, ascending
 };
+
+/// What is searched in one tile: its records stand together in TiledRecords::bytes.
+struct TileSearch {
+  int x, y;  // from the region's corner, in pixels
+  std::vector<SearchPortion> portions;
+};
+struct TiledRecords {
+  std::vector<std::byte> bytes;
+  std::vector<TileSearch> tiles;  // empty ones are there too: their pixels must be stored
+};
+
+/// Copies each tile's records together. Nothing where they would take more than `limit` bytes.
+std::optional<TiledRecords> tiledRecords(const TileLists& lists, const TileGrid& grid, const Records& search,
+                                         std::size_t limit);
 
 /// `samples` per pixel and axis. Uses all cores.
 TileLists tileLists(const Scene& scene, int width, int height, int samples, const TileGrid& grid);
