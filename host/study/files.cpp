@@ -71,12 +71,12 @@ Json json(const Cell& cell) {
 
 std::string toCsv(const Study& study) {
   std::string all;
-  for (const auto& [name, cell] : cells(Row{})) all += (all.empty() ? "" : ",") + std::string(name);
-  all += "\n";
+  const auto endLine = [&] { all.back() = '\n'; };  // instead of the last comma
+  for (const auto& [name, cell] : cells(Row{})) (all += name) += ',';
+  endLine();
   for (const Row& row : study.rows) {
-    std::string line;
-    for (const auto& [name, cell] : cells(row)) line += (name == std::string_view("section") ? "" : ",") + text(cell);
-    all += line + "\n";
+    for (const auto& [name, cell] : cells(row)) (all += text(cell)) += ',';
+    endLine();
   }
   return all;
 }

@@ -193,7 +193,7 @@ std::string catalogueSection(const Study& study) {
     const auto rows = rowsOf(study, Section::catalogue, c.kind, c.id);
     if (rows.empty()) continue;
     body += "<tr><th>" + escaped(c.id) + "</th><td class=\"words\">" + escaped(c.kind) + "</td><td class=\"words\">" +
-            escaped(c.note) + "</td><td>" + escaped(c.truth) + "</td>";
+            escaped(c.note) + "</td><td class=\"way\">" + escaped(c.truth) + "</td>";
     for (const Row* row : rows) {
       const Errors& e = row->errors;
       const bool wrong = e.wrong() > 0 || e.notFinite > 0;
