@@ -260,7 +260,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
 #ifdef EXACT
     // NaN in the margin counts as doubt, hence atLeast() and not less().
     bool clear = atLeast(best[k].margin, mul(ray[k].squared, number(DOUBT)));
-    bool order = less(best[k].second, mul(best[k].s, number(1.0 - 1.0 / 33554432.0))) || !result[k].hit;
+    bool order = less(best[k].second, mul(best[k].s, sub(number(1.0), number(1.0 / 33554432.0)))) || !result[k].hit;
     result[k].doubtful = !(clear && order) || (HITS_IN_DOUBT && result[k].hit);
 #endif
 #if WORLD && FREE

@@ -73,8 +73,8 @@ struct QueryCaster::Impl {
     const bool same = pipeline && storage == program.storage;
     program.storage = storage;
     gpu::Specialisation wanted = recordConstants(program, records, records);
-    // s to 2^-25 in fp64; in fp32 decisions that 2^-24 can tell, since t comes from the second pass.
-    wanted[doubt] = bits(std::ldexp(1.f, program.real == RealType::f64 ? -24 : -9));
+    // s to 2^-25.5 in fp64; in fp32 decisions that 2^-24 can tell, since t comes from the second pass.
+    wanted[doubt] = bits(std::ldexp(1.f, program.real == RealType::f64 ? -23 : -9));
     if (!same || wanted != constants) {
       std::vector<std::uint32_t> spirv = programSpirv(program, options);
       pipeline.emplace(device.makePipeline(spirv, wanted));

@@ -96,7 +96,7 @@ class Pass {
     // 32 u for prepared forms; for forms made on the way, what s needs to 2^-27 (fp64) or decisions alone (fp32).
     bool coarse = exact_ && program_.real == RealType::f32;
     float bound =
-        program_.eye() ? static_cast<float>(32 * unitRoundoff(program_.real)) : std::ldexp(1.f, coarse ? -9 : -24);
+        program_.eye() ? static_cast<float>(32 * unitRoundoff(program_.real)) : std::ldexp(1.f, coarse ? -9 : -20);
     constants[doubt] = bits(bound);
     constants[hitsInDoubt] = coarse;
     spirv_ = programSpirv(program_, options);

@@ -5,8 +5,8 @@
 //        inside: s >= both. So up = min of the upper bounds, lo = max of the lower ones, hit where up >= lo, at
 //        s = up from outside and s = lo from inside. The host gives the reciprocals: no division, no d_i == 0 case,
 //        no infinities (a face through the eye has the reciprocal +-BIG).
-//        d_i is a world component: |error| <= 7u |d|. Eye exactly on a face plane: the sign of d_i itself decides
-//        and is counted (BOX_FACE; compiled in only where a box needs it).
+//        d_i is a world component: |error| <= 7u |d|. Eye on the plane of a face or very near it: a bound of
+//        s that hangs on a small d_i is in doubt, on any axis, and is counted (BOX_FACE; compiled in only where needed).
 // free   slabs with an explicit test for d_i == 0.
 // naive  slabs by reciprocal, min and max.
 // eye record    (a, index) (c, eye inside) (l1, weight of up-lo) (l2, weight of d_i) (weights of d for BOX_FACE, -)

@@ -31,6 +31,27 @@ inline bool packFlat(const Corners& c, const EyeFrame& eye, f128 index, const Ey
   return true;
 }
 
+/// Axes on which the eye is so near the plane of a face that a bound of s may be in doubt: d_i is then small against
+/// |d| where that bound is about s. (d_i loses 2^-28 below 2^-22 |d| in fp64, 2^-13 in double-float.)
+inline std::array<bool, 3> nearFacePlane(const AABox& box, const EyeFrame& eye) {
+  Corners c = corners(box);
+  f128 plane[3], farthest = 0;
+  for (int i = 0; i < 3; ++i) {
+    f128 a = fabsq(c.lo[i] - eye.origin[i]), b = fabsq(c.hi[i] - eye.origin[i]);
+    plane[i] = smaller(a, b);
+    farthest += larger(a, b);
+  }
+  std::array<bool, 3> near{};
+  for (std::size_t i = 0; i < 3; ++i) near[i] = plane[i] <= ldexpq(farthest, -10);
+  return near;
+}
+
+/// box.glsl needs BOX_FACE.
+inline bool eyeOnFacePlane(const AABox& box, const EyeFrame& eye) {
+  std::array<bool, 3> near = nearFacePlane(box, eye);
+  return near[0] || near[1] || near[2];
+}
+
 inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const EyeWriters& out) {
   Corners c = corners(box);
   if (packFlat(c, eye, index, out)) return;
@@ -39,10 +60,11 @@ inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const Eye
   f128 big = bigNumber(rows.type()), steep = steepNumber(rows.type()), steepest = 0;
   f128 nearest = -1, farthest = 0;  // plane of a face that can be hit; corner
   bool inside = true;
+  std::array<bool, 3> near = nearFacePlane(box, eye);
   for (int i = 0; i < 3; ++i) {
     f128 a = (c.lo[i] - eye.origin[i]) / eye.unit, b = (c.hi[i] - eye.origin[i]) / eye.unit;
     farthest += larger(fabsq(a), fabsq(b));
-    onFace[i] = ldexpq(1, 100);
+    onFace[i] = near[static_cast<std::size_t>(i)] ? ldexpq(1, -26) : ldexpq(1, 100);
     if (a > 0 || b < 0) {
       inside = false;
       up[i] = 1 / (a > 0 ? a : b), cap[i] = 0;
@@ -53,7 +75,7 @@ inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const Eye
       low2[i] = b == 0 ? steep : 1 / b;
       // Eye on this face: below the bound of any ray that leaves by it (the face itself is at t = 0, no hit), above
       // all others.
-      if (a == 0 || b == 0) onFace[i] = 1, cap[i] = ldexpq(steep, rows.type() == RealType::f64 ? -66 : -42);
+      if (a == 0 || b == 0) cap[i] = ldexpq(steep, rows.type() == RealType::f64 ? -66 : -42);
     }
     f128 plane = smaller(fabsq(a), fabsq(b));
     if ((a > 0 || b < 0) && (nearest < 0 || plane < nearest)) nearest = plane;
@@ -72,14 +94,6 @@ inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const Eye
   rows.row(low1, steepest > 0 ? 1 / steepest : 1);
   rows.row(low2, ldexpq(1, -26));
   rows.row(onFace, 0);
-}
-
-/// The eye lies on the plane of a face: box.glsl needs BOX_FACE.
-inline bool eyeOnFacePlane(const AABox& box, const EyeFrame& eye) {
-  Corners c = corners(box);
-  for (int i = 0; i < 3; ++i)
-    if (eye.origin[i] == c.lo[i] || eye.origin[i] == c.hi[i]) return true;
-  return false;
 }
 
 inline void packWorld(const AABox& box, V3 origin, f128 index, RowWriter& out) {

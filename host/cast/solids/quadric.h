@@ -53,6 +53,9 @@ inline void packEye(const Quadric& quadric, const EyeFrame& eye, f128 index, con
   V3 o = eye.origin;
   V3 w = Q.M * o + Q.l;
   f128 C = dot(o, w + Q.l) + Q.j;
+  // What is left of an eye on the surface is binary128's rounding; the second pass has the same rule.
+  f128 reach = length(o), scale = (Q.M.norm() * reach + 2 * length(Q.l)) * reach + fabsq(Q.j);
+  if (fabsq(C) <= slack() * scale) C = 0;
   Symmetric M = Q.M * (eye.unit * eye.unit);
   w = w * eye.unit;
   if (Q.M.norm() == 0) {  // a plane 2 l.p + j = 0

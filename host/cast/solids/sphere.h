@@ -8,6 +8,7 @@ inline void packEye(const Sphere& sphere, const EyeFrame& eye, f128 index, const
   V3 f = -eye.relative(sphere.center);
   f128 r = sphere.radius / eye.unit;
   f128 far = dot(f, f), C = far - r * r;
+  if (fabsq(C) <= slack() * far) C = 0;  // the eye is on the surface, as far as binary128 can tell
   // Near the surface the numerator sqrt(q) - b cancels: the quadric's careful form does not.
   f128 near = ldexpq(1, out.type() == RealType::f64 ? -20 : out.type() == RealType::df32 ? -12 : -4);
   if (fabsq(C) < near * far) {
