@@ -3,8 +3,8 @@
 // World space and homogeneous, so neither the reference's formulas (parameter by division) nor the GPU's (inverse
 // distance relative to the eye).
 #pragma once
-#include "host/scene/world.h"
 #include "host/oracle/root.h"
+#include "host/scene/world.h"
 
 namespace solidcast::oracle {
 

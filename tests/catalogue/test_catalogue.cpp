@@ -8,12 +8,12 @@
 #include <set>
 #include <sstream>
 
-#include "host/error.h"
-#include "host/scene/load.h"
-#include "tests/catalogue/cases.h"
 #include "host/catalogue/catalogue.h"
+#include "host/error.h"
 #include "host/oracle/families.h"
 #include "host/oracle/oracle.h"
+#include "host/scene/load.h"
+#include "tests/catalogue/cases.h"
 
 namespace solidcast::catalogue {
 namespace {

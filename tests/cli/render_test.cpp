@@ -298,9 +298,9 @@ TEST(RenderCpu, EveryPrecision) {
 // Coreutils' timeout sends the signal once the picture is under way.
 TEST(RenderCpu, AnInterruptLeavesNoFile) {
   const Folder folder;
-  const std::string command = "timeout -s INT 1 '" SOLIDCAST_BINARY_DIR "/solidcast' render '" +
-                              bundled("a_solids") + "' --backend cpu --precision f128 --size 20000x20000 -o '" +
-                              folder / "big.png" + "' 2>'" + folder / "messages" + "'";
+  const std::string command = "timeout -s INT 1 '" SOLIDCAST_BINARY_DIR "/solidcast' render '" + bundled("a_solids") +
+                              "' --backend cpu --precision f128 --size 20000x20000 -o '" + folder / "big.png" +
+                              "' 2>'" + folder / "messages" + "'";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 124);
   EXPECT_EQ(folder.names(), std::vector<std::string>{"messages"});
 }

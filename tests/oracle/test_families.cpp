@@ -6,9 +6,9 @@
 #include <set>
 #include <variant>
 
-#include "reference_cpu/reference.h"
 #include "host/oracle/families.h"
 #include "host/oracle/oracle.h"
+#include "reference_cpu/reference.h"
 
 namespace solidcast::oracle {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <variant>
 
-#include "reference_cpu/reference.h"
 #include "host/oracle/families.h"
 #include "host/oracle/forms.h"
 #include "host/oracle/oracle.h"
 #include "host/oracle/random.h"
+#include "reference_cpu/reference.h"
 
 namespace solidcast::oracle {
 namespace {
