@@ -15,16 +15,19 @@ namespace solidcast {
 
 enum class Method { naive, fast, exact };
 enum class Arithmetic { automatic, fp64, df32 };  // of `exact`
-/// Whether a small scene's records become constants of the pipeline: results do not change, a ray costs about two
-/// thirds, and a scene or camera costs a compilation of its own. automatic: once an ImageCaster has spent as much time
-/// in dispatches as that compilation is expected to take, so that it never costs more than twice the best choice.
-/// always: at once. Neither where it is not possible (bakingMs() in program.h).
-enum class Baking { automatic, always, never };
+/// How solids are searched; results do not change (plan.h has the costs).
+/// automatic: what is expected to be cheapest; a small scene's records become constants of the pipeline once dispatches
+/// have taken as long as that compilation, so that it never costs more than twice the best choice.
+/// baked: the records are constants of the pipeline. uniform, storage: they are in a buffer of that kind.
+/// tiles: in a storage buffer, a list for each tile of the screen.
+enum class Plan { automatic, baked, uniform, storage, tiles };
 
 struct CastOptions {
   Method method = Method::exact;
   Arithmetic arithmetic = Arithmetic::automatic;
-  Baking baking = Baking::automatic;
+  Plan plan = Plan::automatic;
+  int pictures = 1;                                   // that the caster is expected to make
+  bool moving = false;                                // ... each of another scene or from another place (setScene)
   std::string shaderFolder{};                         // compile from here instead of the carried modules; "" = carried
   std::size_t memoryBudget = std::size_t{512} << 20;  // bytes for host-visible buffers
 };
@@ -36,6 +39,7 @@ struct CastStats {
   std::uint64_t deviceBytes = 0;
   std::string module;
   std::size_t spirvBytes = 0, specialisedSpirvBytes = 0;  // as written, and as the driver got it
+  std::string planName;                                   // of the last pass: "baked", "uniform", ...
   std::vector<std::string> plan;                          // lines: what was decided, and why
   std::vector<std::string> leftOut;                       // lines: what this scene does not need
 };
@@ -50,8 +54,11 @@ class ImageCaster {
   ~ImageCaster();
   /// Bands come to `sink` from the top down, each small enough for the memory budget.
   void render(const BandSink& sink, const CastProgress& progress = {});
+  /// Another scene, or the same from another place, from now on, with the same kind of camera: pipelines stay unless
+  /// other kinds or numbers of solids ask for others. `scene` must outlive the caster or the next call.
+  void setScene(const Scene& scene);
   /// Only the shader, over the whole crop: nothing is read back. GPU time in ms. For benchmarks, and therefore baked
-  /// from the first call on where that is possible, unless Baking::never.
+  /// from the first call on where that is possible, unless another plan was asked for.
   double dispatchOnly();
   const CastStats& stats() const;
 

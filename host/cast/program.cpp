@@ -60,14 +60,6 @@ gpu::Specialisation recordConstants(const Program& program, const Records& searc
   return s;
 }
 
-std::optional<double> bakingMs(const gpu::DeviceInfo& device, const Program& program, const Records& search) {
-  constexpr std::uint32_t mostSolids = 64;
-  std::uint32_t solids = search.solids();
-  if (!device.name.starts_with("llvmpipe") || program.storage || program.real == RealType::df32 || solids > mostSolids)
-    return std::nullopt;
-  return 20 + (program.real == RealType::f64 ? 20 : 10) * solids;
-}
-
 RealType chooseReal(const gpu::DeviceInfo& device, const CastOptions& options, Job job, int camera, std::string& why) {
   if (options.method != Method::exact) {
     why = options.method == Method::naive ? "method naive: textbook formulas in fp32"

@@ -51,12 +51,6 @@ std::uint32_t bits(float value);
 /// `search` is what the program's loops go over (eye records, or world itself).
 gpu::Specialisation recordConstants(const Program& program, const Records& search, const Records& world);
 
-/// Whether a pipeline with the records as constants serves, and then what its compilation costs, in ms, at most about
-/// (docs/performance-notes.md). On llvmpipe alone: SwiftShader's optimizer merges the factors of products that are
-/// `precise` once they are constants, and bits change; other drivers were not measured. Not for storage programs,
-/// double-float (seconds) or more solids than pay.
-std::optional<double> bakingMs(const gpu::DeviceInfo& device, const Program& program, const Records& search);
-
 /// The number type of `method` on this device, with a line that says why.
 RealType chooseReal(const gpu::DeviceInfo& device, const CastOptions& options, Job job, int camera, std::string& why);
 

@@ -1,7 +1,4 @@
 // Records baked into the pipeline: no bit of any channel may show it, and the plan says when it happens.
-#include <algorithm>
-
-#include "host/cast/program.h"
 #include "tests/cast/fixture.h"
 
 namespace solidcast {
@@ -9,10 +6,7 @@ namespace {
 
 class BakingTest : public OnDevice, public testing::WithParamInterface<Method> {
  protected:
-  static bool isBaked(const CastStats& stats) {
-    return std::any_of(stats.plan.begin(), stats.plan.end(),
-                       [](const std::string& line) { return line.find("baked") != std::string::npos; });
-  }
+  static bool isBaked(const CastStats& stats) { return stats.planName == "baked"; }
   static Band whole(ImageCaster& caster) {
     Band all;
     caster.render([&](Band& band) {
@@ -33,8 +27,8 @@ TEST_P(BakingTest, DoesNotShow) {
     for (const bool hits : {false, true}) {
       job.channels = allChannels();
       if (!hits) job.channels.normal = job.channels.local = job.channels.position = false;
-      ImageCaster plain(device(), scene, job, {.method = GetParam(), .baking = Baking::never});
-      ImageCaster baked(device(), scene, job, {.method = GetParam(), .baking = Baking::always});
+      ImageCaster plain(device(), scene, job, {.method = GetParam(), .plan = Plan::uniform});
+      ImageCaster baked(device(), scene, job, {.method = GetParam(), .plan = Plan::baked});
       expectSame(whole(baked), whole(plain), name);
       EXPECT_TRUE(isBaked(baked.stats()));
       plain.dispatchOnly();
@@ -67,27 +61,6 @@ TEST_P(BakingTest, BenchmarksAreBakedFromTheStart) {
   EXPECT_FALSE(isBaked(caster.stats()));
   EXPECT_GT(caster.dispatchOnly(), 0);
   EXPECT_TRUE(isBaked(caster.stats()));
-}
-
-TEST(BakingRule, WhereItServes) {
-  gpu::DeviceInfo device;
-  device.name = "llvmpipe (LLVM 15.0.6, 256 bits)";
-  Records few, many;
-  few.count[1] = 9, many.count[1] = 65;
-  Program program;
-  program.real = RealType::f32;
-  const auto fp32 = bakingMs(device, program, few);
-  ASSERT_TRUE(fp32);
-  EXPECT_FALSE(bakingMs(device, program, many));
-  program.real = RealType::f64;
-  ASSERT_TRUE(bakingMs(device, program, few));
-  EXPECT_GT(*bakingMs(device, program, few), *fp32);
-  program.real = RealType::df32;
-  EXPECT_FALSE(bakingMs(device, program, few));
-  program.real = RealType::f32, program.storage = true;
-  EXPECT_FALSE(bakingMs(device, program, few));
-  program.storage = false, device.name = "SwiftShader Device";
-  EXPECT_FALSE(bakingMs(device, program, few));
 }
 
 }  // namespace

@@ -35,11 +35,11 @@ void run(const std::string& file, int width, int height, int rounds) {
   job.channels.rgb8 = true;
   gpu::Device device({});
   std::vector<Contestant> all;
-  for (const Baking baking : {Baking::never, Baking::always})
+  for (const Plan plan : {Plan::uniform, Plan::baked})
     for (const auto& [name, method] :
          {std::pair{"naive", Method::naive}, std::pair{"fast", Method::fast}, std::pair{"exact", Method::exact}})
       all.push_back(
-          {name, std::make_unique<ImageCaster>(device, scene, job, CastOptions{.method = method, .baking = baking})});
+          {name, std::make_unique<ImageCaster>(device, scene, job, CastOptions{.method = method, .plan = plan})});
   for (int round = 0; round <= rounds; ++round)
     for (Contestant& one : all) {
       const double before = cpuMilliseconds();

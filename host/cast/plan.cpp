@@ -1,0 +1,182 @@
+#include "host/cast/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "host/error.h"
+
+namespace solidcast {
+namespace {
+
+struct Name {
+  Plan plan;
+  const char* text;
+};
+constexpr Name names[] = {{Plan::automatic, "auto"},
+                          {Plan::baked, "baked"},
+                          {Plan::uniform, "uniform"},
+                          {Plan::storage, "storage"},
+                          {Plan::tiles, "tiles"}};
+
+constexpr std::uint32_t mostBaked = 64;  // solids; compiling more takes seconds
+// A search of all solids has to be this large before tiles pay for their lists and dispatches.
+constexpr std::uint32_t fewestTiled = 512;
+
+/// Wall ns that one ray and one solid take from a uniform buffer on two threads of the machine of performance-notes.md.
+double solidNs(const Program& p) {
+  if (p.method == Method::naive) return 0.55;
+  if (p.method == Method::fast) return 0.30;
+  return p.real == RealType::f64 ? 0.53 : p.real == RealType::df32 ? 10 : 0.5;
+}
+constexpr double freeRays = 2.5;      // orthographic cameras: times the above
+constexpr double bakedPart = 0.6;     // of a ray from a uniform buffer
+constexpr double storageTimes = 1.5;  // the same
+constexpr double pipelineMs = 15;     // from the driver's cache, as most are
+constexpr double flattenUs = 4;       // a solid, in binary128
+
+std::uint32_t total(const PlanFacts& f) {
+  std::uint32_t n = 0;
+  for (std::uint32_t c : f.count) n += c;
+  return n;
+}
+
+std::size_t recordBytes(const PlanFacts& f) {
+  static constexpr std::size_t rows[kindCount][2] = {
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) {EYE_ROWS, WORLD_ROWS},
+#include "shaders/solids.def"
+#undef SOLID
+  };
+  std::size_t all = 0;
+  for (std::size_t k = 0; k < kindCount; ++k) all += f.count[k] * rows[k][f.program.eye() ? 0 : 1];
+  return all * (f.program.real == RealType::f32 ? 16 : 32);
+}
+
+std::string number(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", v);
+  return text;
+}
+
+PlanCost costOf(Plan plan, const PlanFacts& f) {
+  const std::uint32_t n = total(f);
+  const std::size_t bytes = recordBytes(f);
+  const double rays = f.pixels * f.pictures, perSolid = solidNs(f.program) * (f.program.eye() ? 1 : freeRays) * 1e-6;
+  const double flatten = flattenUs * 1e-3 * n * (f.moving ? f.pictures : 1), each = std::max(1.0, double(n));
+  PlanCost cost{plan};
+  switch (plan) {
+    case Plan::baked: {
+      cost.prepare_ms = flatten + bakingMs(f.program.real, n) * (f.moving ? f.pictures : 1);
+      cost.rays_ms = rays * perSolid * bakedPart * each;
+      if (!f.llvmpipe) cost.impossible = "only llvmpipe is known to keep every bit of constants";
+      else if (f.program.real == RealType::df32) cost.impossible = "double-float takes seconds to compile";
+      else if (n > mostBaked)
+        cost.impossible = std::to_string(n) + " solids, at most " + std::to_string(mostBaked) + " are compiled";
+      break;
+    }
+    case Plan::uniform:
+      cost.prepare_ms = flatten + pipelineMs;
+      cost.rays_ms = rays * perSolid * each;
+      if (bytes > f.uniformRange)
+        cost.impossible =
+            std::to_string(bytes) + " bytes of records, at most " + std::to_string(f.uniformRange) + " fit";
+      break;
+    case Plan::storage:
+      cost.prepare_ms = flatten + pipelineMs;
+      cost.rays_ms = rays * perSolid * storageTimes * each;
+      break;
+    case Plan::tiles: {
+      // A solid's silhouette lies in a handful of the thousand tiles; unbounded solids lie in all.
+      const double listed = f.count[0] + (n - f.count[0]) * 0.01;
+      cost.prepare_ms = flatten + pipelineMs + f.pictures * (2 + 1e-3 * n);
+      cost.rays_ms = rays * perSolid * storageTimes * (listed + 4);
+      if (!f.program.eye() && f.program.hits) cost.impossible = "normals of free rays need all records in one place";
+      else if (n < fewestTiled)
+        cost.impossible = std::to_string(n) + " solids, tiles are for " + std::to_string(fewestTiled) + " and more";
+      break;
+    }
+    case Plan::automatic:
+      break;
+  }
+  return cost;
+}
+
+}  // namespace
+
+double bakingMs(RealType real, std::uint32_t solids) { return 20 + (real == RealType::f64 ? 20 : 10) * double(solids); }
+
+PlanFacts planFacts(const gpu::DeviceInfo& device, const Scene& scene, const Program& program, double pixels,
+                    const CastOptions& options) {
+  PlanFacts facts;
+  facts.program = program;
+  for (const SolidEntry& solid : scene.world.solids) ++facts.count[static_cast<std::size_t>(kindNumber(solid.shape))];
+  facts.pixels = pixels;
+  facts.pictures = options.pictures;
+  facts.moving = options.moving;
+  facts.llvmpipe = device.name.starts_with("llvmpipe");
+  facts.uniformRange = device.limits.maxUniformBufferRange;
+  facts.storageRange = device.limits.maxStorageBufferRange;
+  return facts;
+}
+
+PlanChoice choosePlan(const PlanFacts& facts, Plan asked) {
+  std::vector<PlanCost> costs;
+  for (const Name& name : names)
+    if (name.plan != Plan::automatic) costs.push_back(costOf(name.plan, facts));
+  auto better = [&](const PlanCost& a, const PlanCost& b) {
+    if ((a.plan == asked) != (b.plan == asked)) return a.plan == asked;
+    if (a.impossible.empty() != b.impossible.empty()) return a.impossible.empty();
+    return a.prepare_ms + a.rays_ms < b.prepare_ms + b.rays_ms;
+  };
+  std::stable_sort(costs.begin(), costs.end(), better);
+  const PlanCost& best = costs.front();
+  if (!best.impossible.empty())
+    throw Error(Exit::usage, std::string("--plan ") + planName(best.plan) + ": not possible here: " + best.impossible);
+  PlanChoice choice;
+  choice.plan = best.plan;
+  choice.bakingMs = bakingMs(facts.program.real, total(facts));
+  choice.bakeLater = asked == Plan::automatic && best.plan == Plan::uniform && !facts.moving &&
+                     costOf(Plan::baked, facts).impossible.empty();
+  choice.costs = std::move(costs);
+  return choice;
+}
+
+std::vector<std::string> planLines(const PlanFacts& facts, const PlanChoice& choice, Plan asked) {
+  std::vector<std::string> lines;
+  for (const PlanCost& cost : choice.costs) {
+    std::string line = lines.empty() ? std::string(asked == Plan::automatic ? "chosen: " : "as asked: ") : "not ";
+    line += planName(cost.plan);
+    line += ", ";
+    if (cost.impossible.empty())
+      line += "expected to take " + number(cost.prepare_ms) + " ms + " + number(cost.rays_ms) + " ms for " +
+              number(facts.pixels * facts.pictures) + " rays";
+    else line += "not possible: " + cost.impossible;
+    lines.push_back(line);
+  }
+  if (choice.bakeLater)
+    lines.push_back("baked once dispatches have taken " + number(choice.bakingMs) + " ms, should it come to that");
+  return lines;
+}
+
+const char* planName(Plan plan) {
+  for (const Name& name : names)
+    if (name.plan == plan) return name.text;
+  return "";
+}
+
+std::vector<std::string> planNames() {
+  std::vector<std::string> all;
+  for (const Name& name : names) all.push_back(name.text);
+  return all;
+}
+
+Plan planByName(const std::string& text) {
+  std::string list;
+  for (const Name& name : names) {
+    if (text == name.text) return name.plan;
+    list += (list.empty() ? "" : ", ") + std::string(name.text);
+  }
+  throw Error(Exit::usage, "--plan: \"" + text + "\" is no plan, expected one of " + list);
+}
+
+}  // namespace solidcast
