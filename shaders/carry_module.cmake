@@ -31,7 +31,7 @@ file(WRITE ${SOURCE}.d "${target}: ${dependencies}")
 
 file(READ ${SPIRV} bytes HEX)
 string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${bytes}")
-file(WRITE ${SOURCE} "#include \"host/gpu/carried.h\"
+file(WRITE ${SOURCE} "#include \"host/carried/carried.h\"
 
 namespace solidcast::gpu::carried {
 static const std::uint32_t words[] = {

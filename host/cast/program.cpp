@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "host/carried/carried.h"
 #include "host/error.h"
 
 namespace solidcast {

@@ -7,7 +7,7 @@
 
 #include "host/cli/verbs.h"
 #include "host/gpu/device.h"
-#include "host/gpu/probe.h"
+#include "host/carried/probe.h"
 
 namespace solidcast::cli {
 namespace {

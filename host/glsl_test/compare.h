@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "host/glsl_test/function.h"
+#include "function.h"
 
 namespace solidcast::glsl_test {
 

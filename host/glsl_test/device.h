@@ -2,7 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include "host/gpu/device.h"
+#include "../gpu/device.h"
 
 namespace solidcast::glsl_test {
 

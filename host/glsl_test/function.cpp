@@ -104,7 +104,7 @@ Function::Function(gpu::Device& device, const std::string& snippet, const std::s
 
   f.source = shaderAround(snippet, options.name, f.signature, f.arrays);
   std::vector<std::filesystem::path> folders = options.folders;
-  folders.emplace_back(SOLIDCAST_GLSL_FOLDER);
+  folders.insert(folders.end(), options.buildFolders.begin(), options.buildFolders.end());
   try {
     f.spirv = gpu::compileText(f.source, options.name, options.defines, folders).spirv;
   } catch (const Error& error) {

@@ -4,7 +4,8 @@
 //   const glsl_test::Call call = f(std::vector<float>{1, 2, 3});
 //   call.result().as<float>()  // {2, 4, 6}
 //
-// docs/glsl-tests.md is the tutorial.
+// docs/glsl-tests.md is the tutorial. This header and those it includes are installed, so they name each other by
+// relative paths, which hold in the source tree and under include/solidcast alike.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -13,22 +14,32 @@
 #include <string>
 #include <vector>
 
-#include "host/error.h"
-#include "host/glsl_test/signature.h"
-#include "host/glsl_test/types.h"
-#include "host/gpu/device.h"
-#include "host/gpu/shaders.h"
+#include "../error.h"
+#include "../gpu/device.h"
+#include "../gpu/shaders.h"
+#include "signature.h"
+#include "types.h"
+
+#ifndef SOLIDCAST_GLSL_FOLDER
+#error "SOLIDCAST_GLSL_FOLDER is not defined: link the CMake target solidcast::glsl_test, which knows the folder"
+#endif
+#ifndef SOLIDCAST_GLSL_TEST_FOLDERS  // "folder", "folder", each with a comma behind it
+#define SOLIDCAST_GLSL_TEST_FOLDERS
+#endif
 
 namespace solidcast::glsl_test {
 
 struct Options {
   gpu::Defines defines{};                        // macros of the snippet
-  std::vector<std::filesystem::path> folders{};  // where #include looks; solidcast's own shaders come after these
+  std::vector<std::filesystem::path> folders{};  // where #include looks after the including file's own folder
   /// Arrays that the snippet reads beside its parameters, e.g. {"vec4 rows"}: there `rows(i)`, here set("rows", ...).
   std::vector<std::string> arrays{};
   gpu::Specialisation specialisation{};
   std::string name = "snippet";  // stands for the snippet in messages
   int runs = 5;                  // timed ones, after one that is not (the driver compiles in it)
+  /// Where #include looks at last, as the build of the test knows it: the folders given to the CMake function
+  /// solidcast_glsl_test(), then the one of solidcast's own GLSL ("solidcast/solids/sphere.glsl").
+  std::vector<std::filesystem::path> buildFolders{SOLIDCAST_GLSL_TEST_FOLDERS SOLIDCAST_GLSL_FOLDER};
 };
 
 class Call;

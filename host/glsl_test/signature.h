@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "host/glsl_test/types.h"
+#include "types.h"
 
 namespace solidcast::glsl_test {
 

@@ -1,5 +1,5 @@
-// GLSL to SPIR-V: modules compiled at build time and carried in the binary, or compiled now from a folder that
-// somebody edits.
+// GLSL to SPIR-V, compiled now from a folder that somebody edits or from text; and what is done with modules before the
+// driver sees them. Modules compiled at build time are in host/carried.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,17 +7,10 @@
 #include <map>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace solidcast::gpu {
-
-/// A module carried in the binary, by its name in CMakeLists.txt's list (e.g. "pixels_exact"); throws Exit::shader if unknown.
-std::span<const std::uint32_t> carriedModule(std::string_view name);
-
-/// Names of all carried modules.
-std::vector<std::string_view> carriedModules();
 
 using Defines = std::vector<std::pair<std::string, std::string>>;
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "host/catalogue/catalogue.h"
-#include "host/gpu/probe.h"
+#include "host/carried/probe.h"
 #include "host/scene/load.h"
 #include "host/study/bench.h"
 #include "host/study/pictures.h"

@@ -19,7 +19,7 @@ class NumericTest : public Test {
  protected:
   /// A function over `real`s as C++ sees them: float, double, or vec2(hi, lo).
   static Function of(int arithmetic, const std::string& body, const std::string& signature) {
-    return Function(device(), "#include \"numeric.glsl\"\n" + body, signature,
+    return Function(device(), "#include \"solidcast/numeric.glsl\"\n" + body, signature,
                     {.defines = {{"ARITHMETIC", std::to_string(arithmetic)}}, .runs = 1});
   }
   static Function binary(const std::string& operation) {
@@ -43,7 +43,7 @@ void correctlyRounded(const std::string& type, int arithmetic) {
   const auto function = [&](const std::string& operation, const std::string& parameters, const std::string& arguments) {
     const std::string signature = type + " f(" + parameters + ")";
     return Function(device(),
-                    "#include \"numeric.glsl\"\n" + signature + " { return " + operation + "(" + arguments + "); }",
+                    "#include \"solidcast/numeric.glsl\"\n" + signature + " { return " + operation + "(" + arguments + "); }",
                     signature, {.defines = {{"ARITHMETIC", std::to_string(arithmetic)}}, .runs = 1});
   };
   Operands operands(1);

@@ -16,8 +16,8 @@ const std::string prelude = R"(
 bool testGrazing, testFace;
 #define GRAZING testGrazing
 #define BOX_FACE testFace
-#include "hit.glsl"
-#include "solids/KIND.glsl"
+#include "solidcast/hit.glsl"
+#include "solidcast/solids/KIND.glsl"
 
 real4 rowAt(uint row) {
 #if ARITHMETIC == 2

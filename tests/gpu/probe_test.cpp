@@ -1,5 +1,5 @@
 // The arithmetic that exact methods rest on, as lavapipe is known to do it.
-#include "host/gpu/probe.h"
+#include "host/carried/probe.h"
 
 #include "tests/gpu/fixture.h"
 

@@ -3,7 +3,8 @@
 
 #include <cstdio>
 
-#include "host/gpu/probe.h"
+#include "host/carried/carried.h"
+#include "host/carried/probe.h"
 #include "tests/gpu/fixture.h"
 
 namespace solidcast::gpu {

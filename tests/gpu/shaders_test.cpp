@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "host/carried/carried.h"
 #include "tests/gpu/fixture.h"
 
 namespace solidcast::gpu {

@@ -2,7 +2,7 @@
 // the trap is gone and what works around it may go too.
 #include <cmath>
 
-#include "host/gpu/probe.h"
+#include "host/carried/probe.h"
 #include "tests/gpu/fixture.h"
 
 namespace solidcast::gpu {

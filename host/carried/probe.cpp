@@ -1,4 +1,4 @@
-#include "host/gpu/probe.h"
+#include "host/carried/probe.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <random>
 #include <type_traits>
 
-#include "host/gpu/shaders.h"
+#include "host/carried/carried.h"
 
 namespace solidcast::gpu {
 namespace {

@@ -1,7 +1,8 @@
-#include "host/gpu/shaders.h"
+#include "host/carried/carried.h"
+
+#include <string>
 
 #include "host/error.h"
-#include "host/gpu/carried.h"
 
 namespace solidcast::gpu {
 
