@@ -28,27 +28,6 @@
 
 layout(local_size_x = 16, local_size_y = 4) in;
 
-#define INTEGRATOR(NUMBER, name, Type) const uint name##_number = NUMBER;
-#include "integrators.def"
-#undef INTEGRATOR
-#include "integrators/casting.glsl"
-#include "integrators/castingdist.glsl"
-
-// --- what is wanted (specialisation) and where (push constants) --------------------------------------------------
-layout(constant_id = 24) const uint INTEGRATOR_NUMBER = 0u;
-layout(constant_id = 25) const bool TWO_SIDED = false;
-layout(constant_id = 26) const uint SAMPLES = 1u;     // per pixel and axis
-layout(constant_id = 27) const uint WANTED = 1u;      // bits: rgb8, radiance, distance, solid, normal, local, position
-layout(constant_id = 28) const float DOUBT = 0.0;     // the bound of decided() and decidedAgainst()
-layout(constant_id = 29) const bool HITS_IN_DOUBT = false;  // arithmetic too coarse for t: all hits to the second pass
-#define RGB8 1u
-#define RADIANCE 2u
-#define DISTANCE 4u
-#define SOLID_INDEX 8u
-#define NORMAL 16u
-#define LOCAL 32u
-#define POSITION 64u
-
 layout(push_constant) uniform Portion {
   uint wholeWidth, wholeHeight;  // of the whole image, in pixels
   uint firstX, firstY;           // of this band, in the whole image
@@ -59,22 +38,7 @@ layout(push_constant) uniform Portion {
   uint count[7], firstRow[7];    // STORAGE: this portion's solids
 } portion;
 
-layout(set = 0, binding = 2, std140) uniform View { RAW view[VIEW_RAWS]; };
-real4 viewRow(uint row) { return ROW(view, row); }
-
-layout(set = 0, binding = 3, std430) buffer Image { uvec4 image[]; };
-
-#ifdef EXACT
-layout(set = 0, binding = 4, std430) buffer Doubts {  // rays for the second pass
-  uint doubtCount;
-  uint doubtCapacity;
-  uint doubts[];  // pixel / 4 in the buffers' grid, times 16, plus a bit for each of the four
-};
-#endif
-#if CAMERA == 1
-// cos and sin of the longitude of each column, then of the latitude of each row, in the grid of samples.
-layout(set = 0, binding = 5, std430) readonly buffer Angles { RAW angles[]; };
-#endif
+#include "picture.glsl"
 
 #if METHOD == 0
 #define Found Nearest
@@ -118,64 +82,8 @@ Found kept(Kept k) {
 }
 #endif
 
-// --- rays ---------------------------------------------------------------------------------------------------------
-// Place of a sample on the whole image's grid of samples, from its middle: exact in fp32 up to 2^23 samples a side.
-float gridX(uint column) { return 0.5 * float(int(2u * column + 1u) - int(portion.wholeWidth * SAMPLES)); }
-float gridY(uint row) { return 0.5 * float(int(portion.wholeHeight * SAMPLES) - int(2u * row + 1u)); }
-
-struct CameraRay {
-  real3 origin, direction;  // orthographic: origin relative to the camera's centre, world axes; else camera axes
-};
-
-#if ARITHMETIC == 2
-real3 combine(real x, real y, real z) {  // x right + y upward + z backward
-  real4 r = viewRow(1u), u = viewRow(2u), b = viewRow(3u);
-  return real3(add(mul(x, r.x), add(mul(y, u.x), mul(z, b.x))), add(mul(x, r.y), add(mul(y, u.y), mul(z, b.y))),
-               add(mul(x, r.z), add(mul(y, u.z), mul(z, b.z))));
-}
-#else
-real3 combine(real x, real y, real z) {
-  precise real3 r = viewRow(1u).xyz * x + (viewRow(2u).xyz * y + viewRow(3u).xyz * z);
-  return r;
-}
-#endif
-
-CameraRay cameraRay(uint column, uint row) {
-  CameraRay ray;
-  real4 step = viewRow(0u);
-  ray.origin = real3(number(0.0), number(0.0), number(0.0));
-#if CAMERA == 0
-  ray.direction = real3(mul(number(gridX(column)), step.x), mul(number(gridY(row)), step.y), number(-1.0));
-#elif CAMERA == 1
-  uint columns = portion.wholeWidth * SAMPLES, lines = portion.wholeHeight * SAMPLES;  // beyond them: buffer's margin
-  real4 lon = ROW(angles, column < columns ? column : columns - 1u);
-  real4 lat = ROW(angles, columns + (row < lines ? row : lines - 1u));
-  ray.direction = real3(mul(lat.x, lon.y), lat.y, negate(mul(lat.x, lon.x)));
-#else
-  ray.origin = combine(mul(number(gridX(column)), step.x), mul(number(gridY(row)), step.y), number(0.0));
-  ray.direction = real3(number(0.0), number(0.0), number(-1.0));
-#endif
-  return ray;
-}
-
 // --- search -------------------------------------------------------------------------------------------------------
-struct Result {
-  float distance;  // t of the unit direction
-  float cosine;
-  float index;
-  bool hit, doubtful;
-#if WORLD
-  real3 point, direction;  // the hit relative to the records' origin, and the ray, in world axes
-#endif
-};
-
 #define RAYS 4
-#if ARITHMETIC == 2
-#define UNROLL  // unrolled, double-float arithmetic takes seconds to compile
-#else
-#define UNROLL [[unroll]]
-#endif
-
 void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAYS]) {
   Found best[RAYS];
 #if METHOD == 0
@@ -251,18 +159,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
     result[k].point = point;
     result[k].direction = direction[k];
 #else
-    result[k].hit = atLeast(best[k].index, number(0.0));  // as s > 0, but see above for the first value stored
-    result[k].distance = toFloat(mul(quotient(root(ray[k].squared), best[k].s), viewRow(0u).z));
-    precise float cosine = toFloat(best[k].cosine) / sqrt(toFloat(ray[k].squared));
-    result[k].cosine = cosine;
-    result[k].index = toFloat(best[k].index);
-    result[k].doubtful = false;
-#ifdef EXACT
-    // NaN in the margin counts as doubt, hence atLeast() and not less().
-    bool clear = atLeast(best[k].margin, mul(ray[k].squared, number(DOUBT)));
-    bool order = less(best[k].second, mul(best[k].s, sub(number(1.0), number(1.0 / 33554432.0)))) || !result[k].hit;
-    result[k].doubtful = !(clear && order) || (HITS_IN_DOUBT && result[k].hit);
-#endif
+    result[k] = resultOf(best[k], ray[k].squared);
 #if WORLD && FREE
     precise real3 point = ray[k].origin + ray[k].direction / best[k].s;
     result[k].point = point;
@@ -276,27 +173,6 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
   }
 }
 
-// --- radiance -----------------------------------------------------------------------------------------------------
-vec3 radiance(Result result) {
-  Shading shading;
-  shading.distance = result.distance;
-  shading.cosine = TWO_SIDED ? abs(result.cosine) : result.cosine > 0.0 ? result.cosine : 0.0;
-  real4 near = viewRow(4u), far = viewRow(5u);
-  Parameters parameters = Parameters(vec3(toFloat(near.x), toFloat(near.y), toFloat(near.z)), toFloat(near.w),
-                                     vec3(toFloat(far.x), toFloat(far.y), toFloat(far.z)), toFloat(far.w));
-  vec3 colour = vec3(0.0);
-#define INTEGRATOR(NUMBER, name, Type) \
-  if (INTEGRATOR_NUMBER == name##_number) colour = name##_radiance(shading, parameters);
-#include "integrators.def"
-#undef INTEGRATOR
-  return mix(vec3(0.0), colour, bvec3(result.hit));
-}
-
-uint level(float v) {
-  precise float scaled = (v < 0.0 ? 0.0 : v > 1.0 ? 1.0 : v) * 255.0;
-  return uint(scaled);
-}
-
 #if HITS
 #include "finish.glsl"
 #endif
@@ -308,12 +184,6 @@ void main() {
   y += portion.tileY;
 #endif
   uint pixel = y * portion.stride + x;
-  uint base = pixel / 4u, plane = portion.stride * portion.rows / 4u;
-  bool otherSamples = SAMPLES > 1u && (portion.sampleX | portion.sampleY) != 0u;
-#ifdef EXACT
-  uint four = base, capacity = doubtCapacity;
-#endif
-
   uint column[RAYS];
   UNROLL for (int k = 0; k < RAYS; ++k) column[k] = (portion.firstX + x + uint(k)) * SAMPLES + portion.sampleX;
   Result result[RAYS];
@@ -321,49 +191,7 @@ void main() {
 #if STORAGE
   if ((portion.stage & 2u) == 0u) return;
 #endif
-  vec3 colour[RAYS];
-  uint doubtful = 0u;
-  UNROLL for (int k = 0; k < RAYS; ++k) {
-#ifdef EXACT
-    doubtful |= result[k].doubtful ? 1u << k : 0u;
-    result[k].hit = result[k].hit && !result[k].doubtful;  // the second pass adds it
-#endif
-    colour[k] = radiance(result[k]);
-  }
-
-  if ((WANTED & RGB8) != 0u) {
-    uvec4 packed;
-    UNROLL for (int k = 0; k < RAYS; ++k)
-      packed[k] = level(colour[k].r) | level(colour[k].g) << 8 | level(colour[k].b) << 16;
-    image[base] = packed;
-    base += plane;
-  }
-  if ((WANTED & RADIANCE) != 0u) {
-    for (int c = 0; c < 3; ++c) {
-      precise vec4 sum = vec4(colour[0][c], colour[1][c], colour[2][c], colour[3][c]);
-      if (otherSamples) sum += uintBitsToFloat(image[base]);
-      image[base] = floatBitsToUint(sum);  // of all samples; the host divides
-      base += plane;
-    }
-  }
-  if ((WANTED & DISTANCE) != 0u) {
-    vec4 t;
-    UNROLL for (int k = 0; k < RAYS; ++k) t[k] = result[k].hit ? result[k].distance : uintBitsToFloat(0x7f800000u);
-    image[base] = floatBitsToUint(t);
-    base += plane;
-  }
-  if ((WANTED & SOLID_INDEX) != 0u) {
-    uvec4 index;
-    UNROLL for (int k = 0; k < RAYS; ++k) index[k] = result[k].hit ? uint(result[k].index) : 0xffffffffu;
-    image[base] = index;
-    base += plane;
-  }
-#ifdef EXACT
-  if (doubtful != 0u) {
-    uint place = atomicAdd(doubtCount, 1u);
-    if (place < capacity) doubts[place] = four << 4 | doubtful;
-  }
-#endif
+  uint base = storeFour(pixel, result);
 #if HITS
   vec3 normal[RAYS], local[RAYS], position[RAYS];
   vec3 eye = METHOD == 0 ? vec3(0.0) : vec3(viewRow(1u).w, viewRow(2u).w, viewRow(3u).w);
@@ -377,7 +205,7 @@ void main() {
   if ((WANTED & bit) != 0u) {                                                                             \
     for (int c = 0; c < 3; ++c) {                                                                         \
       image[base] = floatBitsToUint(vec4(value[0][c], value[1][c], value[2][c], value[3][c]));            \
-      base += plane;                                                                                      \
+      base += planeSize();                                                                                \
     }                                                                                                     \
   }
   STORE(NORMAL, normal)

@@ -1,0 +1,198 @@
+// What all programs that make pictures share: what is wanted of a pixel, the camera's rays, and the integrators.
+// The including shader has METHOD, CAMERA, ARITHMETIC, WORLD, records.glsl, and the push constants `portion` with the whole
+// image's size (wholeWidth, wholeHeight), the planes' (stride in words, rows), and which sample is cast (sampleX, sampleY).
+#ifndef SOLIDCAST_PICTURE
+#define SOLIDCAST_PICTURE
+
+#define INTEGRATOR(NUMBER, name, Type) const uint name##_number = NUMBER;
+#include "integrators.def"
+#undef INTEGRATOR
+#include "integrators/casting.glsl"
+#include "integrators/castingdist.glsl"
+
+#if ARITHMETIC == 2
+#define UNROLL  // unrolled, double-float arithmetic takes seconds to compile
+#else
+#define UNROLL [[unroll]]
+#endif
+
+// --- what is wanted (specialisation) --------------------------------------------------------------------------------
+layout(constant_id = 24) const uint INTEGRATOR_NUMBER = 0u;
+layout(constant_id = 25) const bool TWO_SIDED = false;
+layout(constant_id = 26) const uint SAMPLES = 1u;     // per pixel and axis
+layout(constant_id = 27) const uint WANTED = 1u;      // bits: rgb8, radiance, distance, solid, normal, local, position
+layout(constant_id = 28) const float DOUBT = 0.0;     // the bound of decided() and decidedAgainst()
+layout(constant_id = 29) const bool HITS_IN_DOUBT = false;  // arithmetic too coarse for t: all hits to the second pass
+#define RGB8 1u
+#define RADIANCE 2u
+#define DISTANCE 4u
+#define SOLID_INDEX 8u
+#define NORMAL 16u
+#define LOCAL 32u
+#define POSITION 64u
+
+layout(set = 0, binding = 2, std140) uniform View { RAW view[VIEW_RAWS]; };
+real4 viewRow(uint row) { return ROW(view, row); }
+
+layout(set = 0, binding = 3, std430) buffer Image { uvec4 image[]; };
+
+#ifdef EXACT
+layout(set = 0, binding = 4, std430) buffer Doubts {  // rays for the second pass
+  uint doubtCount;
+  uint doubtCapacity;
+  uint doubts[];  // pixel / 4 in the buffers' grid, times 16, plus a bit for each of the four
+};
+#endif
+#if CAMERA == 1
+// cos and sin of the longitude of each column, then of the latitude of each row, in the grid of samples.
+layout(set = 0, binding = 5, std430) readonly buffer Angles { RAW angles[]; };
+#endif
+
+// --- rays -----------------------------------------------------------------------------------------------------------
+// Place of a sample on the whole image's grid of samples, from its middle: exact in fp32 up to 2^23 samples a side.
+float gridX(uint column) { return 0.5 * float(int(2u * column + 1u) - int(portion.wholeWidth * SAMPLES)); }
+float gridY(uint row) { return 0.5 * float(int(portion.wholeHeight * SAMPLES) - int(2u * row + 1u)); }
+
+struct CameraRay {
+  real3 origin, direction;  // orthographic: origin relative to the camera's centre, world axes; else camera axes
+};
+
+#if ARITHMETIC == 2
+real3 combine(real x, real y, real z) {  // x right + y upward + z backward
+  real4 r = viewRow(1u), u = viewRow(2u), b = viewRow(3u);
+  return real3(add(mul(x, r.x), add(mul(y, u.x), mul(z, b.x))), add(mul(x, r.y), add(mul(y, u.y), mul(z, b.y))),
+               add(mul(x, r.z), add(mul(y, u.z), mul(z, b.z))));
+}
+#else
+real3 combine(real x, real y, real z) {
+  precise real3 r = viewRow(1u).xyz * x + (viewRow(2u).xyz * y + viewRow(3u).xyz * z);
+  return r;
+}
+#endif
+
+CameraRay cameraRay(uint column, uint row) {
+  CameraRay ray;
+  real4 step = viewRow(0u);
+  ray.origin = real3(number(0.0), number(0.0), number(0.0));
+#if CAMERA == 0
+  ray.direction = real3(mul(number(gridX(column)), step.x), mul(number(gridY(row)), step.y), number(-1.0));
+#elif CAMERA == 1
+  uint columns = portion.wholeWidth * SAMPLES, lines = portion.wholeHeight * SAMPLES;  // beyond them: buffer's margin
+  real4 lon = ROW(angles, column < columns ? column : columns - 1u);
+  real4 lat = ROW(angles, columns + (row < lines ? row : lines - 1u));
+  ray.direction = real3(mul(lat.x, lon.y), lat.y, negate(mul(lat.x, lon.x)));
+#else
+  ray.origin = combine(mul(number(gridX(column)), step.x), mul(number(gridY(row)), step.y), number(0.0));
+  ray.direction = real3(number(0.0), number(0.0), number(-1.0));
+#endif
+  return ray;
+}
+
+// --- radiance -----------------------------------------------------------------------------------------------------
+struct Result {
+  float distance;  // t of the unit direction
+  float cosine;
+  float index;
+  bool hit, doubtful;
+#if WORLD
+  real3 point, direction;  // the hit relative to the records' origin, and the ray, in world axes
+#endif
+};
+
+#if METHOD != 0
+Result resultOf(Best best, real squared) {
+  Result result;
+  // As s > 0, but the first value stored has to depend on the whole search.
+  result.hit = atLeast(best.index, number(0.0));
+  result.distance = toFloat(mul(quotient(root(squared), best.s), viewRow(0u).z));
+  precise float cosine = toFloat(best.cosine) / sqrt(toFloat(squared));
+  result.cosine = cosine;
+  result.index = toFloat(best.index);
+  result.doubtful = false;
+#ifdef EXACT
+  // NaN in the margin counts as doubt, hence atLeast() and not less().
+  bool clear = atLeast(best.margin, mul(squared, number(DOUBT)));
+  bool order = less(best.second, mul(best.s, sub(number(1.0), number(1.0 / 33554432.0)))) || !result.hit;
+  result.doubtful = !(clear && order) || (HITS_IN_DOUBT && result.hit);
+#endif
+  return result;
+}
+#endif
+
+vec3 radiance(Result result) {
+  Shading shading;
+  shading.distance = result.distance;
+  shading.cosine = TWO_SIDED ? abs(result.cosine) : result.cosine > 0.0 ? result.cosine : 0.0;
+  real4 near = viewRow(4u), far = viewRow(5u);
+  Parameters parameters = Parameters(vec3(toFloat(near.x), toFloat(near.y), toFloat(near.z)), toFloat(near.w),
+                                     vec3(toFloat(far.x), toFloat(far.y), toFloat(far.z)), toFloat(far.w));
+  vec3 colour = vec3(0.0);
+#define INTEGRATOR(NUMBER, name, Type) \
+  if (INTEGRATOR_NUMBER == name##_number) colour = name##_radiance(shading, parameters);
+#include "integrators.def"
+#undef INTEGRATOR
+  return mix(vec3(0.0), colour, bvec3(result.hit));
+}
+
+uint level(float v) {
+  precise float scaled = (v < 0.0 ? 0.0 : v > 1.0 ? 1.0 : v) * 255.0;
+  return uint(scaled);
+}
+
+// --- storing --------------------------------------------------------------------------------------------------------
+uint planeSize() { return portion.stride * portion.rows / 4u; }
+
+// Stores four neighbours of a row, the first of them at `pixel` of the planes, with their doubts. Gives the place in
+// the plane after the last one stored.
+uint storeFour(uint pixel, inout Result result[4]) {
+  uint base = pixel / 4u, plane = planeSize();
+  bool otherSamples = SAMPLES > 1u && (portion.sampleX | portion.sampleY) != 0u;
+#ifdef EXACT
+  uint four = base, capacity = doubtCapacity;
+#endif
+  vec3 colour[4];
+  uint doubtful = 0u;
+  UNROLL for (int k = 0; k < 4; ++k) {
+#ifdef EXACT
+    doubtful |= result[k].doubtful ? 1u << k : 0u;
+    result[k].hit = result[k].hit && !result[k].doubtful;  // the second pass adds it
+#endif
+    colour[k] = radiance(result[k]);
+  }
+
+  if ((WANTED & RGB8) != 0u) {
+    uvec4 packed;
+    UNROLL for (int k = 0; k < 4; ++k)
+      packed[k] = level(colour[k].r) | level(colour[k].g) << 8 | level(colour[k].b) << 16;
+    image[base] = packed;
+    base += plane;
+  }
+  if ((WANTED & RADIANCE) != 0u) {
+    for (int c = 0; c < 3; ++c) {
+      precise vec4 sum = vec4(colour[0][c], colour[1][c], colour[2][c], colour[3][c]);
+      if (otherSamples) sum += uintBitsToFloat(image[base]);
+      image[base] = floatBitsToUint(sum);  // of all samples; the host divides
+      base += plane;
+    }
+  }
+  if ((WANTED & DISTANCE) != 0u) {
+    vec4 t;
+    UNROLL for (int k = 0; k < 4; ++k) t[k] = result[k].hit ? result[k].distance : uintBitsToFloat(0x7f800000u);
+    image[base] = floatBitsToUint(t);
+    base += plane;
+  }
+  if ((WANTED & SOLID_INDEX) != 0u) {
+    uvec4 index;
+    UNROLL for (int k = 0; k < 4; ++k) index[k] = result[k].hit ? uint(result[k].index) : 0xffffffffu;
+    image[base] = index;
+    base += plane;
+  }
+#ifdef EXACT
+  if (doubtful != 0u) {
+    uint place = atomicAdd(doubtCount, 1u);
+    if (place < capacity) doubts[place] = four << 4 | doubtful;
+  }
+#endif
+  return base;
+}
+#endif
