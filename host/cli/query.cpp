@@ -106,7 +106,7 @@ void addQuery(CLI::App& app) {
   auto query = std::make_shared<Query>();
   CLI::App* verb = app.add_subcommand("query", "cast any rays at a scene");
   verb->footer(kFooter);
-  verb->add_option("SCENE", query->scene, "scene file (JSON); - is standard input")->required();
+  verb->add_option("SCENE", query->scene, "scene file (JSON) or mesh (.ply, .obj); - is standard input")->required();
   verb->add_option("--rays", query->rays, "file of rays; - is standard input")->required()->type_name("FILE|-");
   verb->add_option("-o,--output", query->output, "file for the hits; - is standard output (default -)")
       ->type_name("FILE");

@@ -141,7 +141,7 @@ void addRender(CLI::App& app) {
   auto render = std::make_shared<Render>();
   CLI::App* verb = app.add_subcommand("render", "render a scene to an image");
   verb->footer(kFooter);
-  verb->add_option("SCENE", render->scene, "scene file (JSON); - is standard input")->required();
+  verb->add_option("SCENE", render->scene, "scene file (JSON) or mesh (.ply, .obj); - is standard input")->required();
   verb->add_option("-o,--output", render->output,
                    "image file; - is standard output (default: the scene's name with .png, in the current folder)")
       ->type_name("FILE");

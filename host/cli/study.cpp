@@ -137,7 +137,8 @@ void addStudy(CLI::App& app) {
   verb->footer(kFooter);
   std::vector<std::string> kinds;
   for (const oracle::Kind kind : oracle::kKinds) kinds.emplace_back(oracle::nameOf(kind));
-  auto* scene = verb->add_option("SCENE", options->scene, "scene file (JSON): its picture, by every method");
+  auto* scene =
+      verb->add_option("SCENE", options->scene, "scene file (JSON) or mesh (.ply, .obj): its picture, by every method");
   auto* solid = verb->add_option("--solid", options->solid, "only this kind of solid")->check(CLI::IsMember(kinds));
   auto* catalogue = verb->add_flag("--catalogue", options->catalogue, "only the catalogue of extreme cases");
   scene->excludes(solid)->excludes(catalogue);

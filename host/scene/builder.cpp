@@ -1,6 +1,9 @@
 #include "host/scene/builder.h"
 
+#include <filesystem>
+
 #include "host/scene/load.h"
+#include "host/scene/mesh.h"
 
 namespace solidcast {
 namespace {
@@ -119,6 +122,10 @@ void SceneBuilder::finishSolid(Level& solid) {
   } else {
     if (solid.isGroup)
       throw Fault{fields.where("solids"), "\"solids\" in a " + fields.text("type") + ", expected it only in a group"};
+    if (fields.text("type") == "mesh") {
+      finishMesh(fields);
+      return;
+    }
     const Shape shape = readSolid(fields, warnings_);
     const std::string name = readName(fields);
     names_.add(name, kindName(shape) + numbered(" ", world.solids.size()), fields.where("name"));
@@ -127,6 +134,23 @@ void SceneBuilder::finishSolid(Level& solid) {
     world.solids.push_back({name, shape, group});
   }
   ++levels_.back().index;
+}
+
+void SceneBuilder::finishMesh(const Fields& fields) {
+  World& world = scene_.world;
+  Level& list = levels_.back();
+  if (groupDepth_ + 1 > kMaxGroupDepth)
+    throw Fault{fields.where(), "groups are nested too deep, expected at most " + std::to_string(kMaxGroupDepth)};
+  const MeshSolid mesh = readMeshSolid(fields);
+  const std::string name = readName(fields);
+  names_.add(name, numbered("group ", world.groups.size()), fields.where("name"));
+  const std::size_t before = warnings_.size();
+  try {
+    addMesh(world, list.group, name, std::filesystem::path(scene_.file).parent_path() / mesh.file, mesh.placement,
+            warnings_);
+  } catch (const Fault& fault) { throw Fault{fields.where("file"), fault.text}; }
+  for (std::size_t i = before; i < warnings_.size(); ++i) warnings_[i].where = fields.where("file");
+  ++list.index;
 }
 
 void SceneBuilder::finishRoot(Level& root) {

@@ -57,6 +57,7 @@ class SceneBuilder : public nlohmann::json_sax<Json> {
   bool add(Json value);
   void open(Role role, Json value);
   void finishSolid(Level& solid);
+  void finishMesh(const Fields& fields);
   void finishRoot(Level& root);
   std::string where() const;
 

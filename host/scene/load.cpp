@@ -10,6 +10,7 @@
 
 #include "host/error.h"
 #include "host/scene/builder.h"
+#include "host/scene/mesh.h"
 
 namespace solidcast {
 namespace {
@@ -96,6 +97,15 @@ std::string place(const std::string& pointer) {
   return pointer.size() <= 160 ? pointer : pointer.substr(0, 60) + " ... " + pointer.substr(pointer.size() - 60);
 }
 
+Scene meshScene(const std::string& file, std::vector<std::string>& warnings) {
+  try {
+    std::vector<Fault> found;
+    Scene scene = sceneOfMesh(file, found);
+    for (const Fault& fault : found) warnings.push_back(fault.text);
+    return scene;
+  } catch (const Fault& fault) { refuse(fault.text); }
+}
+
 }  // namespace
 
 Scene parseScene(const std::string& text, const std::string& file, std::vector<std::string>& warnings) {
@@ -117,6 +127,7 @@ Scene loadScene(const std::string& file, std::vector<std::string>& warnings) {
   if (file == "-") return parseScene(readAll(std::cin, "standard input"), "standard input", warnings);
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) refuse(file + ": is a folder, expected a scene file");
+  if (isMeshFile(file)) return meshScene(file, warnings);
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   if (!in) refuse(file + ": " + (errno == ENOENT ? "no such file" : std::strerror(errno)) + ", expected a scene file");

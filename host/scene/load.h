@@ -9,7 +9,7 @@
 
 namespace solidcast {
 
-/// Reads and checks a scene file; "-" is standard input. Throws Error(Exit::usage) with one line
+/// Reads and checks a scene file, or makes a scene of a mesh file (.ply, .obj); "-" is standard input. Throws Error(Exit::usage) with one line
 /// `file:line:column: ...` or `file: /json/path: what is wrong, expected what`. Warnings (slivers) go to `warnings`.
 Scene loadScene(const std::string& file, std::vector<std::string>& warnings);
 

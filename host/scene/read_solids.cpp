@@ -115,9 +115,26 @@ constexpr SolidReader kReaders[] = {{"sphere", readSphere},  {"infinite_plane", 
 }  // namespace
 
 Names solidTypes() {
-  Names names = {"group"};
+  Names names = {"group", "mesh"};
   for (const SolidReader& reader : kReaders) names.push_back(reader.type);
   return names;
+}
+
+MeshSolid readMeshSolid(const Fields& fields) {
+  onlyKeys(fields, {"file", "scale", "rotate", "translate"});
+  MeshSolid mesh{fields.text("file"), {}};
+  if (fields.has("scale")) {
+    mesh.placement.scale = fields.number("scale");
+    checkPositive(mesh.placement.scale, fields.where("scale"));
+  }
+  if (fields.has("rotate")) {
+    const std::vector<double> turn = fields.numbers("rotate", 4);
+    mesh.placement.axis = {turn[0], turn[1], turn[2]};
+    mesh.placement.degrees = turn[3];
+    checkNonZero(mesh.placement.axis, fields.where("rotate"));
+  }
+  if (fields.has("translate")) mesh.placement.translate = fields.triple("translate");
+  return mesh;
 }
 
 Shape readSolid(const Fields& fields, std::vector<Fault>& warnings) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -81,6 +82,15 @@ TEST_P(Render, SceneFromStandardInput) {
   const Result result = run({"render", "-", "-o", "-", "--backend", GetParam()}, smallScene());
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(result.out, file);
+}
+
+TEST_P(Render, AMeshFileIsAScene) {
+  rendered({SOLIDCAST_SOURCE_DIR "/scenes/meshes/knot.obj", "--size", "40x30"}, "k.png");
+  const std::vector<std::uint8_t> pixels = bytes(folder_ / "k.png");
+  const auto lit = std::count_if(pixels.begin(), pixels.end(), [](std::uint8_t value) { return value > 0; });
+  EXPECT_GT(lit, 3 * 40 * 30 / 10);  // the knot fills a good part of the picture,
+  EXPECT_LT(lit, 3 * 40 * 30 / 2);   // and is seen whole
+  expectError(render({folder_ / "none.ply", "-o", folder_ / "n.png"}), 2, {"none.ply", "no such file"});
 }
 
 TEST_P(Render, SizeReplacesTheScenes) {
