@@ -37,6 +37,7 @@ struct CastStats {
   double flatten_ms = 0, shader_ms = 0, first_dispatch_ms = 0, dispatch_ms = 0, readback_ms = 0, fallback_ms = 0;
   std::uint64_t rays = 0, fallbackRays = 0;
   std::uint64_t deviceBytes = 0;
+  int pipelines = 0;  // made so far
   std::string module;
   std::size_t spirvBytes = 0, specialisedSpirvBytes = 0;  // as written, and as the driver got it
   std::string planName;                                   // of the last pass: "baked", "uniform", ...

@@ -110,7 +110,12 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   constants_ = std::move(constants);
   spirv_ = programSpirv(program_, job_.options);
   if (bakeAtOnce_) bake();
-  else pipeline_.emplace(job_.device.makePipeline(spirv_, constants_));
+  else usePipeline(spirv_);
+}
+
+void GroupSearch::usePipeline(std::span<const std::uint32_t> spirv) {
+  pipeline_.emplace(job_.device.makePipeline(spirv, constants_));
+  ++job_.stats.pipelines;
 }
 
 void GroupSearch::settle() {
@@ -123,7 +128,7 @@ void GroupSearch::bake() {
   for (std::uint32_t binding : {0u, 1u, 2u})  // world records by index of the hit stay a buffer
     if (!buffers_[binding].bytes().empty() && !(binding == 1 && program_.hits))
       contents[binding] = buffers_[binding].bytes();
-  pipeline_.emplace(job_.device.makePipeline(gpu::baked(spirv_, contents), constants_));
+  usePipeline(gpu::baked(spirv_, contents));
   job_.stats.plan.push_back("records baked into the pipeline as constants");
   job_.stats.planName = planName(Plan::baked);
   bakeAtOnce_ = true;

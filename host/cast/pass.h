@@ -29,7 +29,7 @@ struct PassTarget {
 struct PassJob {
   gpu::Device& device;
   const RenderJob& job;
-  const CastOptions& options;
+  CastOptions options;
   Crop crop;
   Program program;  // `storage` is the search's to decide
   std::uint32_t wanted = 0;

@@ -20,9 +20,6 @@ constexpr Name names[] = {{Plan::automatic, "auto"},
                           {Plan::tiles, "tiles"}};
 
 constexpr std::uint32_t mostBaked = 64;  // solids; compiling more takes seconds
-// A search of all solids has to be this large before tiles pay for their lists and dispatches.
-constexpr std::uint32_t fewestTiled = 512;
-
 /// Wall ns that one ray and one solid take from a uniform buffer on two threads of the machine of performance-notes.md.
 double solidNs(const Program& p) {
   if (p.method == Method::naive) return 0.55;
@@ -91,8 +88,6 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
       cost.prepare_ms = flatten + pipelineMs + f.pictures * (2 + 1e-3 * n);
       cost.rays_ms = rays * perSolid * storageTimes * (listed + 4);
       if (!f.program.eye() && f.program.hits) cost.impossible = "normals of free rays need all records in one place";
-      else if (n < fewestTiled)
-        cost.impossible = std::to_string(n) + " solids, tiles are for " + std::to_string(fewestTiled) + " and more";
       break;
     }
     case Plan::automatic:

@@ -107,7 +107,9 @@ int run(int argc, char** argv) {
   addStudy(app);
   try {
     checkVerb(app, argc, argv);
-    app.parse(argc, argv);
+    std::vector<std::string> words = withPlanNames({argv + 1, argv + argc});
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app.parse(std::move(words));
   } catch (const CLI::RuntimeError& error) {
     return error.get_exit_code();
   } catch (const CLI::Success& asked) {  // --help, --version

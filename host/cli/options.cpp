@@ -7,6 +7,7 @@
 #include <charconv>
 #include <thread>
 
+#include "host/cast/plan.h"
 #include "host/error.h"
 #include "host/scene/load.h"
 
@@ -114,6 +115,42 @@ void addCastingOptions(CLI::App& verb, CastingOptions& options) {
       "Vulkan validation layer; auto: where installed and SOLIDCAST_VALIDATION=1 (default auto)");
 }
 
+namespace {
+constexpr char kShowPlan[] = "show";
+}
+
+void addPlan(CLI::App& verb, CastingOptions& options) {
+  std::string names;
+  for (const std::string& name : planNames()) names += (names.empty() ? "" : "|") + name;
+  verb.add_option_function<std::string>(
+          "--plan",
+          [&options](const std::string& name) {
+            if (name == kShowPlan) options.showPlan = true;
+            else options.cast.plan = planByName(name);
+          },
+          "how solids are searched; without a name: print what was decided and why (default auto)")
+      ->type_name("[" + names + "]");
+}
+
+void printPlan(const CastingOptions& options, const CastStats& stats) {
+  if (!options.showPlan) return;
+  for (const std::string& line : stats.plan) note("plan: " + line);
+}
+
+std::vector<std::string> withPlanNames(std::vector<std::string> words) {
+  const std::vector<std::string> names = planNames();
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] != "--plan") continue;
+    if (i + 1 < words.size() && std::find(names.begin(), names.end(), words[i + 1]) != names.end()) {
+      words[i] += "=" + words[i + 1];
+      words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    } else {
+      words[i] += std::string("=") + kShowPlan;
+    }
+  }
+  return words;
+}
+
 void addBackend(CLI::App& verb, Backend& backend) {
   addChoice<Backend>(verb, "--backend", backend, {{"gpu", Backend::gpu}, {"cpu", Backend::cpu}},
                      "cast on a Vulkan device, or by the CPU reference (default gpu)");
@@ -126,8 +163,8 @@ void checkBackend(const CLI::App& verb, Backend backend) {
                   "--precision: chooses the number type of the CPU reference, expected --backend cpu with it");
     return;
   }
-  for (const char* option : {"--device", "--method", "--arithmetic", "--shaders"})
-    if (verb.count(option) > 0)
+  for (const char* option : {"--device", "--method", "--arithmetic", "--shaders", "--plan"})
+    if (verb.get_option_no_throw(option) != nullptr && verb.count(option) > 0)
       throw Error(Exit::usage,
                   std::string(option) + ": has no meaning for the CPU reference, expected --backend gpu with it");
 }

@@ -34,6 +34,7 @@ struct CastingOptions {
   std::string device;  // as gpu::Device::Options::select
   gpu::Validation validation = gpu::Validation::automatic;
   CastOptions cast;
+  bool showPlan = false;  // --plan without a name
   reference::Precision precision = reference::Precision::f64;
 };
 
@@ -42,6 +43,16 @@ void addImageOptions(CLI::App& verb, ImageOptions& options);
 
 /// --device, --validation, --method, --arithmetic, --shaders (all for the GPU), --precision (CPU reference).
 void addCastingOptions(CLI::App& verb, CastingOptions& options);
+
+/// --plan [NAME], for verbs that cast on the GPU.
+void addPlan(CLI::App& verb, CastingOptions& options);
+
+/// The decision with its reasons on standard error, where it was asked for.
+void printPlan(const CastingOptions& options, const CastStats& stats);
+
+/// "--plan" may stand alone, with a plan's name behind it, or as --plan=NAME: the first two become the third, so that a
+/// scene's file is not taken for a plan.
+std::vector<std::string> withPlanNames(std::vector<std::string> words);
 
 /// --backend gpu|cpu.
 void addBackend(CLI::App& verb, Backend& backend);

@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "host/cli/clock.h"
 #include "host/cli/options.h"
 #include "host/cli/progress.h"
 #include "host/cli/render_stats.h"
+#include "host/cli/sequence.h"
 #include "host/cli/verbs.h"
 #include "host/error.h"
 #include "host/image/writer.h"
@@ -28,6 +30,8 @@ Examples:
   solidcast render scenes/a_solids.json -o a2-2.png --integrator castingdist
   solidcast render scene.json -o out.pfm --size 1920x1080 --samples 4 --aov normal,distance
   solidcast render scene.json -o part.png --crop 100,50,64,64 --backend cpu --precision f128
+  solidcast render scene.json --frames 36 -o turn.png       (turn.01.png to turn.36.png)
+  solidcast render scene.json --plan
   solidcast render scene.json --stats --json | jq .dispatch_ms)";
 
 struct Render {
@@ -37,6 +41,7 @@ struct Render {
   Backend backend = Backend::gpu;
   ImageOptions image;
   CastingOptions casting;
+  Sequence sequence;
 };
 
 struct Output {
@@ -60,32 +65,65 @@ std::vector<Output> outputs(const Render& render) {
   return list;
 }
 
-/// Casts the job on the chosen backend; fills in the statistics' casting part.
-void cast(const Render& render, const Scene& scene, const RenderJob& job, gpu::Device* device, const BandSink& sink,
-          RenderStats& stats) {
-  Progress bar;
-  if (device != nullptr) {
-    renderGpu(*device, scene, job, render.casting.cast, sink, stats.cast, [&](double fraction) { bar.show(fraction); });
-    return;
+/// Casts jobs on the chosen backend; what is made for the first frame serves the others.
+class Caster {
+ public:
+  Caster(const Render& render, const RenderJob& job, RenderStats& stats) : render_(render), job_(job), stats_(stats) {
+    if (render.backend == Backend::gpu) device_ = openDevice(render.casting);
+    else note(cpuName(render.casting.precision));
   }
-  const double before = sinceProcessStart();
-  double sinking = 0;
-  std::mutex mutex;  // rows end on several threads
-  const BandSink timed = [&](Band& band) {
-    const double start = sinceProcessStart();
-    sink(band);
-    sinking += sinceProcessStart() - start;
-  };
-  reference::render(scene, job, render.casting.precision, timed, 0, [&](int done, int total) {
-    const std::lock_guard lock(mutex);
-    bar.show(static_cast<double>(done) / total);
-  });
-  stats.cast.dispatch_ms = sinceProcessStart() - before - sinking;
-  const std::uint64_t pixels = std::uint64_t(stats.width) * std::uint64_t(stats.height);
-  stats.cast.rays = pixels * std::uint64_t(job.samples) * std::uint64_t(job.samples);
+  const gpu::Device* device() const { return device_.get(); }
+
+  /// Fills in the statistics' casting part. `scene` must outlive the caster or the next call.
+  void cast(const Scene& scene, const BandSink& sink, const CastProgress& progress) {
+    if (!device_) {
+      castOnCpu(scene, sink, progress);
+      return;
+    }
+    if (gpu_) gpu_->setScene(scene);
+    else gpu_.emplace(*device_, scene, job_, render_.casting.cast);
+    gpu_->render(sink, progress);
+    stats_.cast = gpu_->stats();
+  }
+
+ private:
+  void castOnCpu(const Scene& scene, const BandSink& sink, const CastProgress& progress) {
+    const double before = sinceProcessStart();
+    double sinking = 0;
+    std::mutex mutex;  // rows end on several threads
+    const BandSink timed = [&](Band& band) {
+      const double start = sinceProcessStart();
+      sink(band);
+      sinking += sinceProcessStart() - start;
+    };
+    reference::render(scene, job_, render_.casting.precision, timed, 0, [&](int done, int total) {
+      const std::lock_guard lock(mutex);
+      progress(static_cast<double>(done) / total);
+    });
+    stats_.cast.dispatch_ms += sinceProcessStart() - before - sinking;
+    const std::uint64_t pixels = std::uint64_t(stats_.width) * std::uint64_t(stats_.height);
+    stats_.cast.rays += pixels * std::uint64_t(job_.samples) * std::uint64_t(job_.samples);
+  }
+
+  const Render& render_;
+  const RenderJob& job_;
+  RenderStats& stats_;
+  std::unique_ptr<gpu::Device> device_;
+  std::optional<ImageCaster> gpu_;
+};
+
+std::vector<ImageWriter> openWriters(const std::vector<Output>& list, const Sequence& sequence, int frame,
+                                     RenderStats& stats) {
+  std::vector<ImageWriter> writers;
+  for (const Output& output : list) {
+    const std::string path = frameFile(output.path, sequence, frame);
+    writers.emplace_back(path, stats.width, stats.height, output.kind);
+    stats.outputs.push_back(path);
+  }
+  return writers;
 }
 
-void run(const CLI::App& verb, const Render& render) {
+void run(const CLI::App& verb, Render render) {
   checkBackend(verb, render.backend);
   const std::vector<Output> list = outputs(render);
   if (render.json && list.front().path == "-")
@@ -94,35 +132,44 @@ void run(const CLI::App& verb, const Render& render) {
 
   RenderStats stats;
   const double beforeScene = sinceProcessStart();
-  Scene scene = loadWithWarnings(render.scene);
-  apply(render.image, scene);
+  Scene first = loadWithWarnings(render.scene);
+  apply(render.image, first);
+  const std::vector<Camera> cameras = camerasOf(render.sequence, first, list.front().path);
   stats.scene_ms = sinceProcessStart() - beforeScene;
 
   Channels channels;
   for (const Output& output : list) addChannel(channels, imageFormat(output.path), output.kind);
-  const RenderJob job = makeJob(render.image, scene, channels);
+  const RenderJob job = makeJob(render.image, first, channels);
   stats.width = job.crop.width > 0 ? job.crop.width : job.width;
   stats.height = job.crop.width > 0 ? job.crop.height : job.height;
+  stats.frames = static_cast<int>(cameras.size());
+  render.casting.cast.pictures = stats.frames;
+  render.casting.cast.moving = stats.frames > 1;
 
-  std::vector<ImageWriter> writers;
-  for (const Output& output : list) {
-    writers.emplace_back(output.path, stats.width, stats.height, output.kind);
-    stats.outputs.push_back(output.path);
+  std::vector<ImageWriter> writers = openWriters(list, render.sequence, 0, stats);
+  Caster caster(render, job, stats);
+  std::optional<Progress> bar(std::in_place);
+  Scene scene = std::move(first);
+  const double beforeFrames = sinceProcessStart();
+  for (int frame = 0; frame < stats.frames; ++frame) {
+    if (frame > 0) writers = openWriters(list, render.sequence, frame, stats);
+    scene.camera = cameras[static_cast<std::size_t>(frame)];
+    const BandSink sink = [&](Band& band) {
+      for (ImageWriter& writer : writers) writer.rows(band);
+    };
+    caster.cast(scene, sink, [&](double fraction) { bar->show((frame + fraction) / stats.frames); });
+    for (ImageWriter& writer : writers) {
+      writer.finish();
+      stats.encode_ms += writer.encodeMilliseconds();
+      stats.write_ms += writer.writeMilliseconds();
+    }
   }
-  std::unique_ptr<gpu::Device> device;
-  if (render.backend == Backend::gpu) device = openDevice(render.casting);
-  else note(cpuName(render.casting.precision));
-
-  const BandSink sink = [&](Band& band) {
-    for (ImageWriter& writer : writers) writer.rows(band);
-  };
-  cast(render, scene, job, device.get(), sink, stats);
-  for (ImageWriter& writer : writers) {
-    writer.finish();
-    stats.encode_ms += writer.encodeMilliseconds();
-    stats.write_ms += writer.writeMilliseconds();
-  }
+  stats.frames_ms = sinceProcessStart() - beforeFrames;
+  bar.reset();
+  if (stats.frames > 1) note(frameRate(stats.frames, stats.frames_ms));
+  printPlan(render.casting, stats.cast);
   if (!render.stats && !render.json) return;
+  const gpu::Device* device = caster.device();
   stats.scene = scene.file;
   stats.solids = scene.world.solids.size();
   stats.deviceName = device ? device->info().name : cpuName(render.casting.precision);
@@ -152,6 +199,8 @@ void addRender(CLI::App& app) {
   addBackend(*verb, render->backend);
   addImageOptions(*verb, render->image);
   addCastingOptions(*verb, render->casting);
+  addPlan(*verb, render->casting);
+  addSequence(*verb, render->sequence);
   verb->add_flag("--stats", render->stats, "print phases, sizes, the plan and what was left out");
   verb->add_flag("--json", render->json, "print the statistics as JSON on standard output");
   verb->callback([verb, render] { run(*verb, *render); });

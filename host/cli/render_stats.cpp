@@ -75,6 +75,9 @@ void printJson(const RenderStats& s) {
   json["width"] = s.width;
   json["height"] = s.height;
   json["module"] = s.cast.module;
+  json["frames"] = s.frames;
+  if (s.frames_ms > 0) json["frames_per_second"] = std::round(s.frames * 1e7 / s.frames_ms) / 1e4;
+  json["plan_name"] = s.cast.planName;
   for (const auto& [name, ms] : phases(s)) json[name] = std::round(ms * 1e4) / 1e4;
   for (const auto& [name, count] : counts(s)) json[name] = count;
   json["plan"] = s.cast.plan;

@@ -14,8 +14,10 @@ struct RenderStats {
   std::string scene, deviceName, driver;
   std::vector<std::string> outputs;
   int width = 0, height = 0;  // of what was rendered
+  int frames = 1;
   std::size_t solids = 0;
   double scene_ms = 0, instance_ms = 0, device_ms = 0, encode_ms = 0, write_ms = 0, whole_ms = 0;
+  double frames_ms = 0;  // all frames, from the first cast to the last write
   std::uint64_t deviceBytesPeak = 0;
   CastStats cast;
 };

@@ -21,6 +21,9 @@ Names solidTypes();
 /// The text under "name", or "" where there is none.
 std::string readName(const Fields& fields);
 
+/// {"type": "perspective", ...}. Keeps checkCamera()'s rules.
+Camera readCamera(const Fields& fields, std::vector<Fault>& warnings);
+
 /// Everything at the top of the file but the solids: image, camera, integrators, two_sided.
 void readView(const Fields& fields, Scene& scene, std::vector<Fault>& warnings);
 

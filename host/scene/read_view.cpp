@@ -33,14 +33,6 @@ Camera readCameraFields(const Fields& fields) {
   return EnvironmentCamera{center, forward, up, vertical, horizontal};
 }
 
-Camera readCamera(const Fields& fields, std::vector<Fault>& warnings) {
-  const Camera camera = readCameraFields(fields);
-  std::vector<Fault> found;
-  within(fields.where(), [&] { checkCamera(camera, found); });
-  for (Fault& warning : found) warnings.push_back({fields.where() + warning.where, std::move(warning.text)});
-  return camera;
-}
-
 Integrator readIntegrator(const Fields& fields) {
   const std::string type = fields.choice("type", "integrator", {"casting", "castingdist"});
   if (type == "casting") {
@@ -73,6 +65,14 @@ void readIntegrators(const Json& value, const std::string& where, Scene& scene) 
 }
 
 }  // namespace
+
+Camera readCamera(const Fields& fields, std::vector<Fault>& warnings) {
+  const Camera camera = readCameraFields(fields);
+  std::vector<Fault> found;
+  within(fields.where(), [&] { checkCamera(camera, found); });
+  for (Fault& warning : found) warnings.push_back({fields.where() + warning.where, std::move(warning.text)});
+  return camera;
+}
 
 void readView(const Fields& fields, Scene& scene, std::vector<Fault>& warnings) {
   fields.onlyKeys({"$schema", "image", "camera", "integrator", "two_sided", "solids"});
