@@ -83,8 +83,9 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
       cost.rays_ms = rays * perSolid * storageTimes * each;
       break;
     case Plan::tiles: {
-      // A solid's silhouette lies in a handful of the thousand tiles; unbounded solids lie in all.
-      const double listed = f.count[0] + (n - f.count[0]) * 0.01;
+      // A scene of n solids that fill it has silhouettes of about n^(-2/3) of the picture; unbounded solids lie in all
+      // tiles.
+      const double bounded = n - f.count[0], listed = f.count[0] + std::min(bounded, 4 * std::cbrt(bounded));
       cost.prepare_ms = flatten + pipelineMs + f.pictures * (2 + 1e-3 * n);
       cost.rays_ms = rays * perSolid * storageTimes * (listed + 4);
       if (!f.program.eye() && f.program.hits) cost.impossible = "normals of free rays need all records in one place";

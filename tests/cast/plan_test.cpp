@@ -50,6 +50,14 @@ TEST(Plan, ManySolidsGoByTiles) {
     EXPECT_EQ(choosePlan(facts(100000, real), Plan::automatic).plan, Plan::tiles);
 }
 
+TEST(Plan, FewSolidsNeverGoByTiles) {
+  PlanFacts f = facts(9, RealType::f64);
+  for (const double pixels : {1e2, 1e6, 1e8, 1e10}) {
+    f.pixels = pixels;
+    EXPECT_NE(choosePlan(f, Plan::automatic).plan, Plan::tiles) << pixels;
+  }
+}
+
 TEST(Plan, WhatWasAskedForIsDoneOrRefusedWithTheNumbers) {
   for (const Plan plan : {Plan::baked, Plan::uniform, Plan::storage}) EXPECT_EQ(choosePlan(facts(9), plan).plan, plan);
   try {
