@@ -105,6 +105,7 @@ int run(int argc, char** argv) {
   addDevices(app);
   addGenerate(app);
   addStudy(app);
+  addBench(app);
   try {
     checkVerb(app, argc, argv);
     std::vector<std::string> words = withPlanNames({argv + 1, argv + argc});

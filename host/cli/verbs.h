@@ -14,5 +14,6 @@ void addQuery(CLI::App& app);
 void addDevices(CLI::App& app);
 void addGenerate(CLI::App& app);
 void addStudy(CLI::App& app);
+void addBench(CLI::App& app);
 
 }  // namespace solidcast::cli
