@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "host/cast/stopwatch.h"
 
@@ -142,14 +143,11 @@ void Pass::read(Band& band) const {
   const std::uint32_t* plane = image_.as<std::uint32_t>().data();
   if (wanted_ & RGB8) {
     band.rgb8.resize(static_cast<std::size_t>(band.width) * u(band.rows) * 3);
-    std::uint8_t* out = band.rgb8.data();
+    std::uint8_t *out = band.rgb8.data(), *const last = out + band.rgb8.size() - 3;
     for (int y = 0; y < band.rows; ++y) {
       const std::uint32_t* row = plane + static_cast<std::size_t>(y) * u(stride_);
-      for (int x = 0; x < band.width; ++x, out += 3) {
-        out[0] = static_cast<std::uint8_t>(row[x]);
-        out[1] = static_cast<std::uint8_t>(row[x] >> 8);
-        out[2] = static_cast<std::uint8_t>(row[x] >> 16);
-      }
+      // Four bytes at a time; the fourth is where the next pixel begins. Three stores a pixel take three times as long.
+      for (int x = 0; x < band.width; ++x, out += 3) std::memcpy(out, row + x, out == last ? 3 : 4);
     }
     plane += static_cast<std::size_t>(stride_) * u(padded(band.rows, groupRows));
   }
