@@ -80,6 +80,13 @@ std::string driversSeen() {
 
 }  // namespace
 
+std::string driversWithoutHardware(const std::string& folder) {
+  std::error_code ignored;
+  for (const char* node : {"dri", "dxg", "kfd", "kgsl-3d0", "mali0"})
+    if (fs::exists(fs::path(folder) / node, ignored)) return "";
+  return "intel_*,radeon_*,nouveau_*,virtio_*,broadcom_*,freedreno_*,panfrost_*,asahi_*,powervr_*,dzn_*";
+}
+
 std::string noDeviceMessage(const std::string& why) {
   return "no Vulkan device: " + why + " (" + driversSeen() +
          "); software Vulkan comes with Debian's packages libvulkan1 and mesa-vulkan-drivers";

@@ -24,6 +24,10 @@ struct Loader {
 #undef X
 
   Loader() {
+    // Nobody else's choice is overruled: 0 leaves a variable that is set alone.
+    if (const std::string idle = driversWithoutHardware("/dev");
+        !idle.empty() && !std::getenv("VK_LOADER_DRIVERS_SELECT"))
+      setenv("VK_LOADER_DRIVERS_DISABLE", idle.c_str(), 0);
     void* library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!library) throw Error(Exit::noDevice, noDeviceMessage("the loader libvulkan.so.1 is not installed"));
     vkGetInstanceProcAddr = reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library, "vkGetInstanceProcAddr"));

@@ -1,7 +1,10 @@
 // Which device is taken, and what is said when there is none.
 #include "host/gpu/select.h"
 
+#include <unistd.h>
+
 #include <cstdio>
+#include <filesystem>
 
 #include "host/carried/carried.h"
 #include "host/carried/probe.h"
@@ -53,6 +56,17 @@ TEST(SelectTest, RefusesWithTheListOfDevices) {
   EXPECT_EQ(errorOf(Exit::usage, [] { selectDevice(machine(), "e"); }), "device \"e\" fits 2 devices" + list);
   EXPECT_EQ(errorOf(Exit::usage, [] { selectDevice({machine()[0]}, "gpu"); }),
             "no device \"gpu\"; there is: 0 = llvmpipe (LLVM 15) (cpu)");
+}
+
+TEST(SelectTest, DriversOfHardwareAreLeftOutWhereThereIsNone) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("devices" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  EXPECT_NE(driversWithoutHardware(folder).find("radeon_*"), std::string::npos);
+  EXPECT_EQ(driversWithoutHardware(folder).find("lvp"), std::string::npos);  // software needs no hardware
+  std::filesystem::create_directory(folder / "dri");
+  EXPECT_EQ(driversWithoutHardware(folder), "");
+  std::filesystem::remove_all(folder);
 }
 
 TEST(SelectTest, UnknownDeviceOnThisMachine) {
