@@ -35,13 +35,13 @@ struct Result {
   Times dispatchCpu;  // the same in processor time of all threads: what remains true on a busy machine
   /// From the solids to what rays are cast at: ours flattening and tiles, a peer's build.
   Times build;
-  /// From arrays of solids to the finished image. Ours with the pipeline compiled: build, and a render of a caster that is
-  /// kept (dispatch, second pass, reading back).
+  /// From arrays of solids to the finished image. Ours by a caster that gets the scene anew with its pipeline compiled
+  /// (ImageCaster::setScene): flattening, dispatch, second pass, reading back.
   Times image;
   /// Ours: the same by a new caster, with everything that compilation costs (the driver's disk cache is warm).
   Times firstImage;
   std::vector<std::pair<const char*, double>> phases;  // ours, of the first image: medians in ms by name
-  std::int64_t differing = 0;                          // pixels more than 1 level off our last entry's image
+  std::int64_t differing = 0;                          // pixels more than 1 level off what `exact` shows
 };
 
 struct Entry {
@@ -60,6 +60,7 @@ class Race {
 
  private:
   class Ours;
+  gpu::Device& device_;
   const Scene& scene_;
   std::vector<std::unique_ptr<Ours>> ours_;
   std::vector<std::unique_ptr<Peer>> peers_;

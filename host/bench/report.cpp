@@ -77,11 +77,13 @@ std::string text(const SceneResults& scene) {
        << scene.width << "x" << scene.height << ", " << scene.rounds
        << (scene.rounds == 1 ? " round\n\n" : " rounds\n\n");
   std::string out = head.str();
-  std::vector<std::vector<std::string>> rows{{"method", "Mray/s: median (best)", "dispatch ms: min / median / max",
-                                              "CPU ns/ray", "build ms", "image ms: min / median", "pixels off"}};
+  std::vector<std::vector<std::string>> rows{{"method", "plan", "Mray/s: median (best)",
+                                              "dispatch ms: min / median / max", "CPU ns/ray", "build ms",
+                                              "image ms: min / median", "pixels off"}};
   for (const Result& r : scene.results)
     rows.push_back(
-        {r.method, fixed(mrays(scene, r.dispatch.median()), 1) + " (" + fixed(mrays(scene, r.dispatch.min()), 1) + ")",
+        {r.method, r.ours ? r.plan : "",
+         brief(mrays(scene, r.dispatch.median())) + " (" + brief(mrays(scene, r.dispatch.min())) + ")",
          fixed(r.dispatch.min(), 2) + " / " + fixed(r.dispatch.median(), 2) + " / " + fixed(r.dispatch.max(), 2),
          fixed(r.dispatchCpu.min() * 1e6 / (double(scene.width) * scene.height), 2), fixed(r.build.median(), 2),
          fixed(r.image.min(), 2) + " / " + fixed(r.image.median(), 2), std::to_string(r.differing)});

@@ -20,7 +20,8 @@ constexpr char kFooter[] =
 bundled scene (a_solids), or random:KIND:COUNT[:SEED] as generate makes them. Without --method: fast and exact.
   dispatch  casting and storing 8-bit colours (ours by the device's clock; peers: tracing)
   build     ours: flattening, lists of tiles; peers: records, geometry and commit
-  image     from arrays of solids to the finished image, pipelines compiled
+  image     from arrays of solids to the finished image; ours with a pipeline that serves any such scene
+  pixels off  more than 1 level from what exact shows
   first image  the same with compilation (disk cache of the driver warm), by phases
 Peers: embree (Embree 3: rtcIntersect16 and rtcIntersect1; package libembree-dev), simd (hand-written AVX-512 or AVX2,
 for small scenes), cpu (the reference; --precision).
@@ -117,6 +118,7 @@ void addBench(CLI::App& app) {
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   addCastingOptions(*verb, options->casting);
+  addPlan(*verb, options->casting);
   verb->add_flag("--json", options->json, "print JSON on standard output, one object a scene and method");
   verb->callback([verb, options] { run(*verb, *options); });
 }
