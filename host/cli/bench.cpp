@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "host/bench/left_out.h"
 #include "host/bench/race.h"
 #include "host/bench/report.h"
 #include "host/bench/scenes.h"
@@ -30,12 +31,13 @@ Examples:
   solidcast bench
   solidcast bench a_solids --size 1920x1080 --against embree,simd,cpu --runs 11
   solidcast bench random:sphere:100000 random:triangle:100000 --method fast --against embree
+  solidcast bench a_solids --left-out --size 1920x1080
   solidcast bench scene.json --json | jq '.[] | [.method, .mrays_per_s]')";
 
 struct Bench {
   std::vector<std::string> scenes, against;
   int width = 0, height = 0, runs = 5;
-  bool json = false;
+  bool json = false, leftOut = false;
   CastingOptions casting;
 };
 
@@ -67,6 +69,8 @@ std::vector<std::unique_ptr<bench::Peer>> peersFor(const Bench& options, const S
 
 void run(const CLI::App& verb, const Bench& options) {
   checkPeers(options.against);
+  if (options.leftOut && (options.json || !options.against.empty()))
+    throw Error(Exit::usage, "--left-out: is a table of its own, expected neither --json nor --against with it");
   std::vector<bench::Entry> entries;
   if (verb.count("--method") > 0) {
     const char* names[] = {"naive", "fast", "exact"};
@@ -90,6 +94,13 @@ void run(const CLI::App& verb, const Bench& options) {
   std::vector<bench::SceneResults> all;
   for (const Scene& scene : scenes) {
     Progress bar;
+    if (options.leftOut) {
+      const CastOptions& cast = entries.front().options;
+      std::cout << bench::leftOutText(*device, options.casting.device, scene, cast, options.runs, [&](double fraction) {
+        bar.show(fraction, scene.file);
+      }) << std::flush;
+      continue;
+    }
     bench::Race race(*device, scene, entries, peersFor(options, scene));
     all.push_back({scene.file, scene.width, scene.height, options.runs, scene.world.solids.size(),
                    race.run(options.runs, [&](double fraction) { bar.show(fraction, scene.file); })});
@@ -119,6 +130,8 @@ void addBench(CLI::App& app) {
       ->capture_default_str();
   addCastingOptions(*verb, options->casting);
   addPlan(*verb, options->casting);
+  verb->add_flag("--left-out", options->leftOut,
+                 "instead: what it would cost to leave in what a scene does not need (--method, default fast)");
   verb->add_flag("--json", options->json, "print JSON on standard output, one object a scene and method");
   verb->callback([verb, options] { run(*verb, *options); });
 }

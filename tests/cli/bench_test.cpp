@@ -48,6 +48,15 @@ TEST(Bench, TheReportIsMarkdownOnStandardOutput) {
     EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
 }
 
+TEST(Bench, LeftOutIsATableOfItsOwn) {
+  const Result result = run({"bench", "quadrics", "--left-out", "--size", "64x48", "--runs", "1"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  for (const char* row : {"| nothing ", "| kinds that the scene lacks", "| the other integrator", "| channel: normal ",
+                          "| records in a uniform buffer", "| decisions watched"})
+    EXPECT_NE(result.out.find(row), std::string::npos) << row << "\n" << result.out;
+  expectError(run({"bench", "quadrics", "--left-out", "--json"}), 2, {"--left-out", "--json"});
+}
+
 TEST(Bench, RefusesInOneLine) {
   expectError(run({"bench", "a_solids", "--against", "povvray"}), 2, {"--against", "\"povvray\"", "embree"});
   expectError(run({"bench", "random:sphere"}), 2, {"random:sphere", "expected random:KIND:COUNT[:SEED]"});
