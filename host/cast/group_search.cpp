@@ -99,12 +99,8 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   constants[twoSided] = job_.job.twoSided;
   constants[samples] = u(job_.samples);
   constants[wanted] = job_.wanted;
-  // 32 u for prepared forms; for forms made on the way, what s needs to 2^-27 (fp64) or decisions alone (fp32).
-  bool coarse = program_.method == Method::exact && program_.real == RealType::f32;
-  float bound =
-      program_.eye() ? static_cast<float>(32 * unitRoundoff(program_.real)) : std::ldexp(1.f, coarse ? -9 : -20);
-  constants[doubt] = bits(bound);
-  constants[hitsInDoubt] = coarse;
+  constants[doubt] = bits(doubtOf(program_));
+  constants[hitsInDoubt] = program_.method == Method::exact && program_.real == RealType::f32;
   const bool same = pipeline_ && constants == constants_ && !bakeAtOnce_;
   if (same) return;
   constants_ = std::move(constants);

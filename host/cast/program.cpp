@@ -86,6 +86,11 @@ RealType chooseReal(const gpu::DeviceInfo& device, const CastOptions& options, J
   return RealType::f32;
 }
 
+float doubtOf(const Program& program) {
+  if (program.eye()) return static_cast<float>(32 * unitRoundoff(program.real));
+  return program.method == Method::exact && program.real == RealType::f32 ? 0x1p-9f : 0x1p-20f;
+}
+
 std::vector<std::uint32_t> programSpirv(const Program& program, const CastOptions& options) {
   if (options.shaderFolder.empty()) {
     auto words = gpu::carriedModule(program.moduleName());

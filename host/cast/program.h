@@ -54,6 +54,10 @@ gpu::Specialisation recordConstants(const Program& program, const Records& searc
 /// The number type of `method` on this device, with a line that says why.
 RealType chooseReal(const gpu::DeviceInfo& device, const CastOptions& options, Job job, int camera, std::string& why);
 
+/// DOUBT of pixels.comp, the bound that exact's decisions in pictures are counted against: 32 u for prepared forms; for
+/// forms made on the way, what s needs to 2^-27 (fp64) or decisions alone (fp32).
+float doubtOf(const Program& program);
+
 /// SPIR-V of the program: carried in the binary, or compiled now from options.shaderFolder.
 std::vector<std::uint32_t> programSpirv(const Program& program, const CastOptions& options);
 

@@ -11,6 +11,7 @@
 
 #include "host/cli/clock.h"
 #include "host/cli/options.h"
+#include "host/cli/pixel.h"
 #include "host/cli/progress.h"
 #include "host/cli/verbs.h"
 #include "host/error.h"
@@ -40,13 +41,15 @@ Examples:
   solidcast compare a.png b.png --max-differing 60 --max-level 1 --json | jq .worst
   solidcast compare scenes/a_solids.json
   solidcast compare scenes/a_solids.json --integrator castingdist --precision f128 --max-differing 0
-  solidcast compare scenes/a_solids.json --method naive --size 1920x1080 -o difference.png)";
+  solidcast compare scenes/a_solids.json --method naive --size 1920x1080 -o difference.png
+  solidcast compare scenes/a_solids.json --method naive --pixel 320,240)";
 
 struct Compare {
   std::vector<std::string> inputs;
   std::string output;
   std::optional<std::int64_t> differing;
   std::optional<double> level;
+  PixelOption pixel;
   bool json = false;
   ImageOptions image;
   CastingOptions casting;
@@ -215,6 +218,11 @@ void run(const CLI::App& verb, const Compare& compare) {
   if (compare.differing && *compare.differing < 0)
     throw Error(Exit::usage, "--max-differing: expected a whole number from 0 up");
   checkInputs(compare);
+  if (compare.pixel && compare.inputs.size() == 2)
+    throw Error(Exit::usage, "--pixel: has no meaning for two image files, expected one scene with it");
+  if (compare.pixel)
+    return explain(verb, {"--output", "--max-differing", "--max-level", "--crop", "--samples"}, compare.inputs[0],
+                   *compare.pixel, compare.image, compare.casting, compare.json);
   std::optional<DifferencePicture> picture;
   const bool files = compare.inputs.size() == 2;
   if (files) checkFileOptions(verb);
@@ -252,7 +260,9 @@ void addCompare(CLI::App& app) {
   verb->add_option("--max-level", compare->level, "difference of a channel that does not count")->type_name("L");
   addImageOptions(*verb, compare->image);
   addCastingOptions(*verb, compare->casting);
-  verb->add_flag("--json", compare->json, "print the census as JSON on standard output");
+  addPixel(*verb, compare->pixel);
+  verb->add_flag("--json", compare->json,
+                 "print the census, or of --pixel the explanation, as JSON on standard output");
   verb->callback([verb, compare] { run(*verb, *compare); });
 }
 

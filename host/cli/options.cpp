@@ -65,6 +65,14 @@ Crop parseCrop(const std::string& option, const std::string& text) {
   return {value[0], value[1], value[2], value[3]};
 }
 
+std::pair<int, int> parsePixel(const std::string& option, const std::string& text) {
+  int place[2];
+  if (!wholeNumbers(text, ',', place, 2) || place[0] < 0 || place[1] < 0)
+    throw Error(Exit::usage, option + ": \"" + text +
+                                 "\" is no pixel, expected X,Y from the top left corner, each from 0 up, e.g. 320,240");
+  return {place[0], place[1]};
+}
+
 void addImageOptions(CLI::App& verb, ImageOptions& options) {
   addChoice<std::string>(verb, "--integrator", options.integrator,
                          {{"casting", "casting"}, {"castingdist", "castingdist"}},

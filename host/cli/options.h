@@ -88,4 +88,7 @@ std::pair<int, int> parseSize(const std::string& option, const std::string& text
 /// X,Y,WIDTH,HEIGHT. Throws Error(Exit::usage) that names `option`.
 Crop parseCrop(const std::string& option, const std::string& text);
 
+/// X,Y from 0 up. Throws Error(Exit::usage) that names `option`.
+std::pair<int, int> parsePixel(const std::string& option, const std::string& text);
+
 }  // namespace solidcast::cli

@@ -10,6 +10,7 @@
 
 #include "host/cli/clock.h"
 #include "host/cli/options.h"
+#include "host/cli/pixel.h"
 #include "host/cli/progress.h"
 #include "host/cli/render_stats.h"
 #include "host/cli/sequence.h"
@@ -32,11 +33,13 @@ Examples:
   solidcast render scene.json -o part.png --crop 100,50,64,64 --backend cpu --precision f128
   solidcast render scene.json --frames 36 -o turn.png       (turn.01.png to turn.36.png)
   solidcast render scene.json --plan
-  solidcast render scene.json --stats --json | jq .dispatch_ms)";
+  solidcast render scene.json --stats --json | jq .dispatch_ms
+  solidcast render scene.json --pixel 320,240 --method fast)";
 
 struct Render {
   std::string scene, output;
   std::vector<std::string> aov;
+  PixelOption pixel;
   bool stats = false, json = false;
   Backend backend = Backend::gpu;
   ImageOptions image;
@@ -124,6 +127,10 @@ std::vector<ImageWriter> openWriters(const std::vector<Output>& list, const Sequ
 }
 
 void run(const CLI::App& verb, Render render) {
+  if (render.pixel)
+    return explain(verb,
+                   {"--output", "--aov", "--stats", "--crop", "--samples", "--backend", "--frames", "--path", "--plan"},
+                   render.scene, *render.pixel, render.image, render.casting, render.json);
   checkBackend(verb, render.backend);
   const std::vector<Output> list = outputs(render);
   if (render.json && list.front().path == "-")
@@ -201,8 +208,10 @@ void addRender(CLI::App& app) {
   addCastingOptions(*verb, render->casting);
   addPlan(*verb, render->casting);
   addSequence(*verb, render->sequence);
+  addPixel(*verb, render->pixel);
   verb->add_flag("--stats", render->stats, "print phases, sizes, the plan and what was left out");
-  verb->add_flag("--json", render->json, "print the statistics as JSON on standard output");
+  verb->add_flag("--json", render->json,
+                 "print the statistics, or of --pixel the explanation, as JSON on standard output");
   verb->callback([verb, render] { run(*verb, *render); });
 }
 

@@ -115,10 +115,11 @@ inline Ball ball(const AABox& box) { return {box.corner1, distance(box.corner1, 
 inline Cut cut(const AABox& box, const RayQ& ray) {
   Corners c = corners(box);
   f128 enter = -1, leave = -1;
-  bool bounded = false, entered = false;
+  bool bounded = false, entered = false, almost = false;
   for (int i = 0; i < 3; ++i) {
     f128 a = c.lo[i] - ray.origin[i], b = c.hi[i] - ray.origin[i], d = ray.direction[i];
     if (d == 0 || (!ray.rational && fabsq(d) <= slack() * length(ray.direction))) {
+      almost = almost || d != 0;
       if (a > 0 || b < 0) return {};
       continue;
     }
@@ -129,7 +130,7 @@ inline Cut cut(const AABox& box, const RayQ& ray) {
   }
   if (!bounded) return {};
   f128 beyond = enter - leave, doubt = slack() * fabsq(leave), t = enter > 0 ? enter : leave;
-  return {beyond <= doubt && t > 0, t, fabsq(beyond) <= doubt};
+  return {beyond <= doubt && t > 0, t, almost || fabsq(beyond) <= doubt};
 }
 
 inline Surface surface(const AABox& box, const RayQ& ray, f128 t) {

@@ -22,11 +22,13 @@ inline f128 steepNumber(RealType type) { return type == RealType::f64 ? f128(1e2
 /// Rows of four numbers, each rounded once from binary128.
 class RowWriter {
  public:
-  explicit RowWriter(RealType type) : type_(type) {}
+  /// `unrounded`, where given, takes the numbers as they were before rounding (host/explain).
+  explicit RowWriter(RealType type, std::vector<f128>* unrounded = nullptr) : type_(type), unrounded_(unrounded) {}
 
   void row(V3 v, f128 w) { row(v.x, v.y, v.z, w); }
   void row(f128 x, f128 y, f128 z, f128 w) {
     const f128 v[4] = {x, y, z, w};
+    if (unrounded_) unrounded_->insert(unrounded_->end(), v, v + 4);
     if (type_ == RealType::f64) {
       double d[4];
       for (int i = 0; i < 4; ++i) d[i] = static_cast<double>(v[i]);
@@ -54,6 +56,7 @@ class RowWriter {
   }
 
   RealType type_;
+  std::vector<f128>* unrounded_;
   std::size_t rows_ = 0;
   std::vector<std::byte> bytes_;
 };
