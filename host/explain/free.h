@@ -2,7 +2,7 @@
 #pragma once
 #include <utility>
 
-#include "host/explain/log.h"
+#include "host/explain/world_quadric.h"
 
 namespace solidcast::explain {
 
@@ -117,16 +117,11 @@ class Free {
   void quad() { span(true); }
 
   void quadric() {
-    const V m = vector("record M, diagonal", 0), n = vector("record M, mixed", 1), l = vector("record l", 2);
-    const N j = log_.stage("record j", at(1, 3));
-    const auto times = [&](const V& v) {
-      return V{linear(V{m.x, n.x, n.y}, v), linear(V{n.x, m.y, n.z}, v), linear(V{n.y, n.z, m.z}, v)};
-    };
-    const V w = log_.stage("w = M o + l", times(o_) + l);
-    N A = log_.stage("A = d'Md", linear(d_, times(d_))), B = log_.stage("B = w.d", linear(w, d_));
-    N C = log_.stage("C = Q(o)", linear(o_, w) + linear(o_, l) + j);
-    const N size = length(m) + N(2) * length(n), slope = size * reach_ + length(l);
-    const N cScale = (size * reach_ + N(2) * length(l)) * reach_ + magnitude(j);
+    const WorldQuadric<Real> Q(
+        log_, [this](int row, int column) { return at(row, column); }, o_, d_);
+    N A = Q.A, B = Q.B, C = Q.C;
+    const N size = length(Q.m) + N(2) * length(Q.n), slope = size * reach_ + length(Q.l);
+    const N cScale = (size * reach_ + N(2) * length(Q.l)) * reach_ + magnitude(Q.j);
     if (C < N(0)) A = -A, B = -B, C = -C;
     const N q = log_.stage("q = B^2 - C A", B * B - C * A);
     const N h = log_.stage("h = sqrt q", root(q));

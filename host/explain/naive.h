@@ -1,6 +1,6 @@
 // KIND_naive of shaders/solids: the textbook in fp32, in t and world coordinates.
 #pragma once
-#include "host/explain/log.h"
+#include "host/explain/world_quadric.h"
 
 namespace solidcast::explain {
 
@@ -68,14 +68,9 @@ class Naive {
   void quad() { span(true); }
 
   void quadric() {
-    const V m = vector("record M, diagonal", 0), n = vector("record M, mixed", 1), l = vector("record l", 2);
-    const N j = log_.stage("record j", at(1, 3));
-    const auto times = [&](const V& v) {
-      return V{linear(V{m.x, n.x, n.y}, v), linear(V{n.x, m.y, n.z}, v), linear(V{n.y, n.z, m.z}, v)};
-    };
-    const V w = log_.stage("w = M o + l", times(o_) + l);
-    const N A = log_.stage("A = d'Md", linear(d_, times(d_))), B = log_.stage("B = w.d", linear(w, d_));
-    const N C = log_.stage("C = Q(o)", linear(o_, w) + linear(o_, l) + j);
+    const WorldQuadric<float> Q(
+        log_, [this](int row, int column) { return at(row, column); }, o_, d_);
+    const N &A = Q.A, &B = Q.B, &C = Q.C;
     const N q = log_.stage("q = B^2 - A C", B * B - A * C);
     const N h = log_.stage("h = sqrt q", root(q));
     const N t1 = (-B - h) / A, t2 = (-B + h) / A;
