@@ -55,6 +55,12 @@ void decided(inout Best best, real value) {
 #define GRAZING false
 #endif
 
+// Whether solids of different kinds can be at equal s by more than chance: the host looks for it. Those of one kind come in
+// the order of their indices.
+#ifndef TIES
+#define TIES true
+#endif
+
 // A candidate at inverse distance s. At equal s the solid with the lower index wins; `exact` leaves that, like
 // every near tie, to the second pass.
 void offer(inout Best best, bool inside, real s, real cosine, real index) {
@@ -64,7 +70,7 @@ void offer(inout Best best, bool inside, real s, real cosine, real index) {
   real loser = select(candidate, best.s, nearer);
   best.second = select(best.second, loser, less(best.second, loser));
 #else
-  bool nearer = inside && (less(best.s, s) || (atLeast(s, best.s) && less(index, best.index)));
+  bool nearer = inside && (less(best.s, s) || (TIES && atLeast(s, best.s) && less(index, best.index)));
 #endif
   best.s = select(best.s, s, nearer);
   best.cosine = select(best.cosine, cosine, nearer);

@@ -40,7 +40,7 @@ layout(set = 0, binding = 3, std430) buffer Image { uvec4 image[]; };
 layout(set = 0, binding = 4, std430) buffer Doubts {  // rays for the second pass
   uint doubtCount;
   uint doubtCapacity;
-  uint doubts[];  // pixel / 4 in the buffers' grid, times 16, plus a bit for each of the four
+  uint doubts[];  // pixel / 8 in the buffers' grid, times 256, plus a bit for each of the eight
 };
 #endif
 #if CAMERA == 1
@@ -102,8 +102,8 @@ struct Result {
 #if METHOD != 0
 Result resultOf(Best best, real squared) {
   Result result;
-  // As s > 0, but the first value stored has to depend on the whole search.
-  result.hit = atLeast(best.index, number(0.0));
+  // The first value stored has to depend on the whole search, index included where it is wanted.
+  result.hit = (WANTED & SOLID_INDEX) != 0u ? atLeast(best.index, number(0.0)) : less(number(0.0), best.s);
   result.distance = toFloat(mul(quotient(root(squared), best.s), viewRow(0u).z));
   precise float cosine = toFloat(best.cosine) / sqrt(toFloat(squared));
   result.cosine = cosine;
@@ -119,7 +119,7 @@ Result resultOf(Best best, real squared) {
 }
 #endif
 
-vec3 radiance(Result result) {
+vec3 radiance(Result result) {  // of a ray that hits
   Shading shading;
   shading.distance = result.distance;
   shading.cosine = TWO_SIDED ? abs(result.cosine) : result.cosine > 0.0 ? result.cosine : 0.0;
@@ -131,67 +131,88 @@ vec3 radiance(Result result) {
   if (INTEGRATOR_NUMBER == name##_number) colour = name##_radiance(shading, parameters);
 #include "integrators.def"
 #undef INTEGRATOR
-  return mix(vec3(0.0), colour, bvec3(result.hit));
+  return colour;
 }
 
 uint level(float v) {
-  precise float scaled = (v < 0.0 ? 0.0 : v > 1.0 ? 1.0 : v) * 255.0;
+  float atLeast0 = v > 0.0 ? v : 0.0;  // each one instruction, unlike nested selections
+  precise float scaled = (atLeast0 < 1.0 ? atLeast0 : 1.0) * 255.0;
   return uint(scaled);
 }
 
 // --- storing --------------------------------------------------------------------------------------------------------
 uint planeSize() { return portion.stride * portion.rows / 4u; }
 
-// Stores four neighbours of a row, the first of them at `pixel` of the planes, with their doubts. Gives the place in
-// the plane after the last one stored.
-uint storeFour(uint pixel, inout Result result[4]) {
+// Stores this many neighbours of a row, the first of them at `pixel` of the planes, with their doubts. Gives the place in
+// the plane after the last one stored (of the first four of them).
+#ifndef STORED
+#define STORED 4u
+#endif
+#define EACH_FOUR UNROLL for (uint q = 0u; q < STORED / 4u; ++q)
+
+uint storeRow(uint pixel, inout Result result[STORED]) {
   uint base = pixel / 4u, plane = planeSize();
   bool otherSamples = SAMPLES > 1u && (portion.sampleX | portion.sampleY) != 0u;
 #ifdef EXACT
-  uint four = base, capacity = doubtCapacity;
+  uint capacity = doubtCapacity, doubtful[(STORED + 7u) / 8u];
+  UNROLL for (uint e = 0u; e < (STORED + 7u) / 8u; ++e) doubtful[e] = 0u;
 #endif
-  vec3 colour[4];
-  uint doubtful = 0u;
-  UNROLL for (int k = 0; k < 4; ++k) {
+  vec3 colour[STORED];
+  UNROLL for (uint k = 0u; k < STORED; ++k) {
 #ifdef EXACT
-    doubtful |= result[k].doubtful ? 1u << k : 0u;
+    doubtful[k / 8u] |= result[k].doubtful ? 1u << (k % 8u) : 0u;
     result[k].hit = result[k].hit && !result[k].doubtful;  // the second pass adds it
 #endif
     colour[k] = radiance(result[k]);
   }
 
   if ((WANTED & RGB8) != 0u) {
-    uvec4 packed;
-    UNROLL for (int k = 0; k < 4; ++k)
-      packed[k] = level(colour[k].r) | level(colour[k].g) << 8 | level(colour[k].b) << 16;
-    image[base] = packed;
+    EACH_FOUR {
+      uvec4 packed;
+      UNROLL for (uint k = 0u; k < 4u; ++k) {
+        vec3 c = colour[4u * q + k];
+        // The selection comes last: LLVM moves conversions and shifts into the store's loop over the lanes.
+        packed[k] = result[4u * q + k].hit ? level(c.r) | level(c.g) << 8 | level(c.b) << 16 : 0u;
+      }
+      image[base + q] = packed;
+    }
     base += plane;
   }
   if ((WANTED & RADIANCE) != 0u) {
     for (int c = 0; c < 3; ++c) {
-      precise vec4 sum = vec4(colour[0][c], colour[1][c], colour[2][c], colour[3][c]);
-      if (otherSamples) sum += uintBitsToFloat(image[base]);
-      image[base] = floatBitsToUint(sum);  // of all samples; the host divides
+      EACH_FOUR {
+        precise vec4 sum;
+        UNROLL for (uint k = 0u; k < 4u; ++k) sum[k] = result[4u * q + k].hit ? colour[4u * q + k][c] : 0.0;
+        if (otherSamples) sum += uintBitsToFloat(image[base + q]);
+        image[base + q] = floatBitsToUint(sum);  // of all samples; the host divides
+      }
       base += plane;
     }
   }
   if ((WANTED & DISTANCE) != 0u) {
-    vec4 t;
-    UNROLL for (int k = 0; k < 4; ++k) t[k] = result[k].hit ? result[k].distance : uintBitsToFloat(0x7f800000u);
-    image[base] = floatBitsToUint(t);
+    EACH_FOUR {
+      vec4 t;
+      UNROLL for (uint k = 0u; k < 4u; ++k)
+        t[k] = result[4u * q + k].hit ? result[4u * q + k].distance : uintBitsToFloat(0x7f800000u);
+      image[base + q] = floatBitsToUint(t);
+    }
     base += plane;
   }
   if ((WANTED & SOLID_INDEX) != 0u) {
-    uvec4 index;
-    UNROLL for (int k = 0; k < 4; ++k) index[k] = result[k].hit ? uint(result[k].index) : 0xffffffffu;
-    image[base] = index;
+    EACH_FOUR {
+      uvec4 index;
+      UNROLL for (uint k = 0u; k < 4u; ++k)
+        index[k] = result[4u * q + k].hit ? uint(result[4u * q + k].index) : 0xffffffffu;
+      image[base + q] = index;
+    }
     base += plane;
   }
 #ifdef EXACT
-  if (doubtful != 0u) {
-    uint place = atomicAdd(doubtCount, 1u);
-    if (place < capacity) doubts[place] = four << 4 | doubtful;
-  }
+  UNROLL for (uint e = 0u; e < (STORED + 7u) / 8u; ++e)
+    if (doubtful[e] != 0u) {
+      uint place = atomicAdd(doubtCount, 1u);
+      if (place < capacity) doubts[place] = (pixel / 8u + e) << 8 | doubtful[e] << (pixel & 4u);
+    }
 #endif
   return base;
 }

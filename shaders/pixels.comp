@@ -1,6 +1,6 @@
 #version 450
-// Primary rays of a camera: search, integrate, store. One invocation does four neighbouring pixels of a row, so that
-// one load of a solid serves four rays.
+// Primary rays of a camera: search, integrate, store. One invocation does several neighbouring pixels of a row (RAYS), so
+// that one load of a solid, and the part of its forms that is the row's, serve them all.
 //
 // Written so that llvmpipe compiles it well (docs/performance-notes.md has what each of these is worth):
 //  - No branch encloses a load of a uniform or push constant, not even an early return: under one it becomes a gather,
@@ -26,7 +26,7 @@
 
 #include "search.glsl"
 
-layout(local_size_x = 16, local_size_y = 4) in;
+layout(local_size_x = 8, local_size_y = 8) in;  // 8 rows: pass.h
 
 layout(push_constant) uniform Portion {
   uint wholeWidth, wholeHeight;  // of the whole image, in pixels
@@ -38,6 +38,8 @@ layout(push_constant) uniform Portion {
   uint count[7], firstRow[7];    // STORAGE: this portion's solids
 } portion;
 
+layout(constant_id = 31) const uint RAYS = 4u;  // of an invocation: 4, 8 or 16
+#define STORED RAYS
 #include "picture.glsl"
 
 #if METHOD == 0
@@ -83,7 +85,6 @@ Found kept(Kept k) {
 #endif
 
 // --- search -------------------------------------------------------------------------------------------------------
-#define RAYS 4
 void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAYS]) {
   Found best[RAYS];
 #if METHOD == 0
@@ -93,7 +94,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
 #else
   EyeRay ray[RAYS];
 #endif
-  UNROLL for (int k = 0; k < RAYS; ++k) {
+  UNROLL for (uint k = 0u; k < RAYS; ++k) {
     CameraRay camera = cameraRay(column[k], row);
 #if METHOD == 0
     vec3 eye = vec3(viewRow(1u).w, viewRow(2u).w, viewRow(3u).w);
@@ -118,7 +119,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
     best[k] = noHit();
 #endif
 #if STORAGE
-    if ((portion.stage & 1u) == 0u) best[k] = kept(state[pixel + uint(k)]);
+    if ((portion.stage & 1u) == 0u) best[k] = kept(state[pixel + k]);
 #endif
   }
 
@@ -137,7 +138,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
   if (KIND##_COUNT > 0u) {                                                    \
     uint at = FIRST_ROW(NUMBER, next);                                        \
     for (uint i = 0u; i < COUNT(NUMBER, KIND); ++i) {                         \
-      UNROLL for (int k = 0; k < RAYS; ++k) TEST(kind, at);                          \
+      UNROLL for (uint k = 0u; k < RAYS; ++k) TEST(kind, at);                   \
       at += ROWS(EYE_ROWS, WORLD_ROWS);                                       \
     }                                                                         \
     next = at;                                                                \
@@ -145,9 +146,9 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
 #include "solids.def"
 #undef SOLID
 
-  UNROLL for (int k = 0; k < RAYS; ++k) {
+  UNROLL for (uint k = 0u; k < RAYS; ++k) {
 #if STORAGE
-    if ((portion.stage & 2u) == 0u) state[pixel + uint(k)] = keep(best[k]);
+    if ((portion.stage & 2u) == 0u) state[pixel + k] = keep(best[k]);
 #endif
 #if METHOD == 0
     result[k].hit = best[k].index >= 0.0;
@@ -178,35 +179,42 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
 #endif
 
 void main() {
-  uint x = gl_GlobalInvocationID.x * 4u, y = gl_GlobalInvocationID.y;
+  uint x = gl_GlobalInvocationID.x * RAYS, y = gl_GlobalInvocationID.y;
 #if STORAGE
   x += portion.tileX;
   y += portion.tileY;
 #endif
   uint pixel = y * portion.stride + x;
+#if EYE && !STORAGE
+  if (HELD) [[unroll]] for (uint i = 0u; i < RECORD_RAWS; ++i) held[i] = records[i];
+#endif
   uint column[RAYS];
-  UNROLL for (int k = 0; k < RAYS; ++k) column[k] = (portion.firstX + x + uint(k)) * SAMPLES + portion.sampleX;
+  UNROLL for (uint k = 0u; k < RAYS; ++k) column[k] = (portion.firstX + x + k) * SAMPLES + portion.sampleX;
   Result result[RAYS];
   search(column, (portion.firstY + y) * SAMPLES + portion.sampleY, pixel, result);
 #if STORAGE
   if ((portion.stage & 2u) == 0u) return;
 #endif
-  uint base = storeFour(pixel, result);
+  uint base = storeRow(pixel, result);
 #if HITS
   vec3 normal[RAYS], local[RAYS], position[RAYS];
   vec3 eye = METHOD == 0 ? vec3(0.0) : vec3(viewRow(1u).w, viewRow(2u).w, viewRow(3u).w);
-  UNROLL for (int k = 0; k < RAYS; ++k) {
+  UNROLL for (uint k = 0u; k < RAYS; ++k) {
     normal[k] = local[k] = position[k] = vec3(0.0);
     if (result[k].hit)
       finish(eye, result[k].point, result[k].direction, result[k].cosine, uint(result[k].index), normal[k], local[k],
              position[k]);
   }
-#define STORE(bit, value)                                                                                 \
-  if ((WANTED & bit) != 0u) {                                                                             \
-    for (int c = 0; c < 3; ++c) {                                                                         \
-      image[base] = floatBitsToUint(vec4(value[0][c], value[1][c], value[2][c], value[3][c]));            \
-      base += planeSize();                                                                                \
-    }                                                                                                     \
+#define STORE(bit, value)                                                        \
+  if ((WANTED & bit) != 0u) {                                                    \
+    for (int c = 0; c < 3; ++c) {                                                \
+      EACH_FOUR {                                                                \
+        vec4 v;                                                                  \
+        UNROLL for (uint k = 0u; k < 4u; ++k) v[k] = value[4u * q + k][c];       \
+        image[base + q] = floatBitsToUint(v);                                    \
+      }                                                                          \
+      base += planeSize();                                                       \
+    }                                                                            \
   }
   STORE(NORMAL, normal)
   STORE(LOCAL, local)

@@ -36,7 +36,15 @@ real4 rowOf(RAW first, RAW second) {
 
 #if EYE
 RECORDS(0, Records, records, RECORD_RAWS);
+#if STORAGE
 real4 record(uint row) { return ROW(records, row); }
+#else
+// With few solids, whose loops are unrolled, all numbers are loaded before the search: each load from a uniform buffer is
+// a bounds check and a branch, and values do not stay in registers across branches.
+layout(constant_id = 33) const bool HELD = false;
+RAW held[RECORD_RAWS];
+real4 record(uint row) { return HELD ? ROW(held, row) : ROW(records, row); }
+#endif
 #endif
 #if WORLD
 RECORDS(1, WorldRecords, worldRecords, WORLD_RAWS);

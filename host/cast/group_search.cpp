@@ -9,6 +9,17 @@
 namespace solidcast {
 namespace {
 
+constexpr int tileWidth = 64;
+// Loops over so few solids are unrolled, and their records loaded before the search.
+constexpr std::uint32_t mostHeld = 16;
+
+/// Pixels of an invocation. More share more, until the registers are full: the state of `exact` is twice as large, and
+/// constants need none. Double-float takes seconds to compile even for four.
+std::uint32_t raysOf(const Program& p, std::uint32_t solids, bool baked) {
+  if (!p.eye() || p.storage || p.hits || p.real == RealType::df32 || solids > mostHeld) return 4;
+  return p.method == Method::fast && baked ? 16 : 8;
+}
+
 // pixels.comp: Portion
 struct PixelPush {
   std::uint32_t wholeWidth, wholeHeight, firstX, firstY, rows, stride, stage, sampleX, sampleY, tileX, tileY;
@@ -101,12 +112,16 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   constants[wanted] = job_.wanted;
   constants[doubt] = bits(doubtOf(program_));
   constants[hitsInDoubt] = program_.method == Method::exact && program_.real == RealType::f32;
+  solids_ = search.solids();
+  constants[held] =
+      !bakeAtOnce_ && program_.eye() && !program_.storage && program_.real != RealType::df32 && solids_ <= mostHeld;
+  constants[rays] = raysOf(program_, solids_, bakeAtOnce_);
   const bool same = pipeline_ && constants == constants_ && !bakeAtOnce_;
   if (same) return;
   constants_ = std::move(constants);
   spirv_ = programSpirv(program_, job_.options);
   if (bakeAtOnce_) bake();
-  else usePipeline(spirv_);
+  else usePipeline(constants_.at(held) ? gpu::baked(spirv_, {}) : spirv_);  // baked: with its loops unrolled
 }
 
 void GroupSearch::usePipeline(std::span<const std::uint32_t> spirv) {
@@ -124,6 +139,8 @@ void GroupSearch::bake() {
   for (std::uint32_t binding : {0u, 1u, 2u})  // world records by index of the hit stay a buffer
     if (!buffers_[binding].bytes().empty() && !(binding == 1 && program_.hits))
       contents[binding] = buffers_[binding].bytes();
+  constants_[held] = false;
+  constants_[rays] = raysOf(program_, solids_, true);
   usePipeline(gpu::baked(spirv_, contents));
   job_.stats.plan.push_back("records baked into the pipeline as constants");
   job_.stats.planName = planName(Plan::baked);
@@ -137,7 +154,7 @@ void GroupSearch::prepareTiles(const Band& band) {
   tiledRow_ = band.firstRow;
   tiles_.clear();
   const Crop& crop = job_.crop;
-  TileGrid grid{{crop.x, crop.y + band.firstRow, band.width, band.rows}, groupWidth, 4 * groupRows};
+  TileGrid grid{{crop.x, crop.y + band.firstRow, band.width, band.rows}, tileWidth, 2 * groupRows};
   while (std::int64_t{grid.across()} * grid.down() > 1024 && grid.tileHeight < band.rows) grid.tileHeight *= 2;
   TileLists lists = tileLists(*scene_, job_.job.width, job_.job.height, job_.samples, grid);
   const std::size_t limit = job_.device.info().limits.maxStorageBufferRange;
@@ -150,7 +167,7 @@ void GroupSearch::prepareTiles(const Band& band) {
   if (tiled) tiles_ = std::move(tiled->tiles);
   tileRows_ = grid.tileHeight;
   if (!warm_)
-    job_.stats.plan.push_back(tiled ? "searched by screen tiles of " + std::to_string(groupWidth) + "x" +
+    job_.stats.plan.push_back(tiled ? "searched by screen tiles of " + std::to_string(tileWidth) + "x" +
                                           std::to_string(tileRows_) + " pixels: " + std::to_string(bytes.size()) +
                                           " bytes of records, " + std::to_string(lists.everywhere.size()) +
                                           " solid(s) in every tile"
@@ -182,12 +199,14 @@ double GroupSearch::dispatch(const PassTarget& target, const Band& band, int sam
   };
   for (const TileSearch& tile : tiles_) push(tile.x, tile.y, std::min(tileRows_, target.rows - tile.y), tile.portions);
   if (tiles_.empty()) push(0, 0, target.rows, portions_);
+  const int across = 8 * static_cast<int>(constants_.at(rays));  // pixels of a workgroup
   std::vector<gpu::Dispatch> dispatches;
   for (std::size_t i = 0; i < pushes.size(); ++i)
-    dispatches.push_back({&*pipeline_,
-                          bound,
-                          std::as_bytes(std::span(&pushes[i], 1)),
-                          {tiles_.empty() ? u(target.stride / groupWidth) : 1u, u(heights[i] / groupRows), 1}});
+    dispatches.push_back(
+        {&*pipeline_,
+         bound,
+         std::as_bytes(std::span(&pushes[i], 1)),
+         {u(padded(tiles_.empty() ? band.width : tileWidth, across) / across), u(heights[i] / groupRows), 1}});
   double ms = job_.device.run(dispatches);
   if (warm_) spent_ += ms;
   warm_ = true;

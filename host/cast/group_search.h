@@ -42,6 +42,7 @@ class GroupSearch : public PixelSearch {
   int tiledRow_ = -1, tileRows_ = 0;
   std::vector<std::uint32_t> spirv_;
   gpu::Specialisation constants_;
+  std::uint32_t solids_ = 0;
   std::optional<gpu::Pipeline> pipeline_;
   std::vector<gpu::Buffer> buffers_;  // by binding; the target's are not here
 };

@@ -118,9 +118,9 @@ void Pass::makeDoubts(std::size_t capacity) {
 std::vector<std::uint32_t> Pass::doubtfulPixels(std::span<const std::uint32_t> entries, const Band& band) const {
   std::vector<std::uint32_t> pixels;
   for (std::uint32_t entry : entries) {
-    std::uint32_t first = entry / 16 * 4, y = first / u(stride_), x = first % u(stride_);
+    std::uint32_t first = entry / 256 * 8, y = first / u(stride_), x = first % u(stride_);
     if (y >= u(band.rows)) continue;
-    for (std::uint32_t k = 0; k < 4 && x + k < u(band.width); ++k)
+    for (std::uint32_t k = 0; k < 8 && x + k < u(band.width); ++k)
       if (entry >> k & 1) pixels.push_back(y * u(band.width) + x + k);
   }
   std::sort(pixels.begin(), pixels.end());

@@ -14,8 +14,9 @@ namespace solidcast {
 /// Bits of pixels.comp's WANTED, in the order of the planes.
 enum Wanted : std::uint32_t { RGB8 = 1, RADIANCE = 2, DISTANCE = 4, SOLID = 8, NORMAL = 16, LOCAL = 32, POSITION = 64 };
 
-/// Buffers hold whole workgroups (pixels.comp: local_size, RAYS): the shaders have no branch for pixels beyond the edge.
-inline constexpr int groupWidth = 64, groupRows = 4;
+/// Buffers hold whole workgroups: the shaders have no branch for pixels beyond the edge. A workgroup of pixels.comp has 8 x 8
+/// invocations, each of 4, 8 or 16 pixels of a row; the buffers fit the widest.
+inline constexpr int groupWidth = 128, groupRows = 8;
 constexpr int padded(int n, int to) { return (n + to - 1) / to * to; }
 
 /// Where a dispatch stores.

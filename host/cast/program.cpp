@@ -58,6 +58,7 @@ gpu::Specialisation recordConstants(const Program& program, const Records& searc
   s[worldRaws] = atLeastOne(world.raws);
   s[boxFacePlane] = search.boxOnFace;
   s[someGraze] = search.grazing;
+  s[someTie] = search.ties;
   return s;
 }
 

@@ -43,7 +43,10 @@ enum Constant : std::uint32_t {
   wanted,
   doubt,
   hitsInDoubt,
-  someGraze
+  someGraze,
+  rays,
+  someTie,
+  held
 };
 std::uint32_t bits(float value);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/cast/solids/all.h"
+#include "host/cast/ties.h"
 
 namespace solidcast {
 namespace {
@@ -106,6 +107,7 @@ Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
   records.places = std::move(places);
   records.boxOnFace = onFace;
   records.grazing = grazing;
+  if (type == RealType::f32) records.ties = mayTie(records, eye);
   return records;
 }
 

@@ -24,6 +24,7 @@ struct Records {
   std::size_t raws = 0;                              // vec4 or dvec4 that the rows take
   bool grazing = false;                              // GRAZING of hit.glsl
   bool boxOnFace = false;                            // BOX_FACE of box.glsl
+  bool ties = true;                                  // TIES of hit.glsl
   std::vector<std::array<std::uint32_t, 2>> places;  // kind and row by index of the solid;
                                                      // a kind of kindCount: dropped, no ray from this eye can hit it
   std::uint32_t solids() const;

@@ -57,7 +57,7 @@ TEST_P(Plumbing, BandsAndRepetitionDoNotShow) {
     RenderJob job = jobOf(scene, allChannels());
     job.samples = samples;
     const Band whole = renderWhole(device(), scene, job, {.method = GetParam()});
-    CastOptions small{.method = GetParam(), .memoryBudget = 60'000};
+    CastOptions small{.method = GetParam(), .memoryBudget = 120'000};
     ImageCaster caster(device(), scene, job, small);
     for (int time = 0; time < 2; ++time) {
       Band all;
