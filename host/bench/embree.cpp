@@ -5,16 +5,35 @@
 #include "host/error.h"
 
 #ifdef SOLIDCAST_EMBREE
-#include <embree3/rtcore.h>
+#include <dlfcn.h>
 
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "host/bench/embree_api.h"
 #include "host/bench/kernels.h"
 #include "host/bench/workers.h"
 
 namespace solidcast::bench {
+
+EmbreeApi embreeApi;
+
+void loadEmbree() {
+  static void* const library = dlopen("libembree3.so.3", RTLD_NOW | RTLD_LOCAL);
+  const auto find = [](const char* name) {
+    void* function = library == nullptr ? nullptr : dlsym(library, name);
+    if (function == nullptr)
+      throw Error(Exit::usage, std::string("--against embree: libembree3.so.3 ") +
+                                   (library == nullptr ? "is not installed" : std::string("has no ") + name) +
+                                   ", expected Debian's package libembree3-3");
+    return function;
+  };
+#define X(name) embreeApi.name = reinterpret_cast<decltype(&::name)>(find(#name));
+  SOLIDCAST_EMBREE_FUNCTIONS(X)
+#undef X
+}
+
 namespace {
 
 using Vec = glm::dvec3;
@@ -119,22 +138,22 @@ class EmbreePeer final : public Peer {
         rays_(scene, width, height),
         image_(rays_) {
     const std::string settings = "threads=" + std::to_string(workers_.threads()) + ",frequency_level=simd512";
-    device_ = rtcNewDevice(settings.c_str());
+    device_ = embreeApi.rtcNewDevice(settings.c_str());
     if (device_ == nullptr)
       throw Error(Exit::usage, "--against embree: Embree makes no device (error " +
-                                   std::to_string(rtcGetDeviceError(nullptr)) + "), expected one for \"" + settings +
-                                   "\"");
+                                   std::to_string(embreeApi.rtcGetDeviceError(nullptr)) + "), expected one for \"" +
+                                   settings + "\"");
   }
   ~EmbreePeer() override {
     drop();
-    rtcReleaseDevice(device_);
+    embreeApi.rtcReleaseDevice(device_);
   }
 
   std::string name() const override { return packets_ ? "embree16" : "embree1"; }
   std::string plan() const override {
-    return "Embree " + std::to_string(rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION_MAJOR)) + "." +
-           std::to_string(rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION_MINOR)) + "." +
-           std::to_string(rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION_PATCH)) +
+    return "Embree " + std::to_string(embreeApi.rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION_MAJOR)) +
+           "." + std::to_string(embreeApi.rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION_MINOR)) + "." +
+           std::to_string(embreeApi.rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION_PATCH)) +
            (packets_ ? ", rtcIntersect16, packets of 4x4 rays, " : ", rtcIntersect1, ") +
            std::to_string(workers_.threads()) + " threads";
   }
@@ -154,7 +173,7 @@ class EmbreePeer final : public Peer {
 
  private:
   void drop() {
-    if (scene_ != nullptr) rtcReleaseScene(scene_);
+    if (scene_ != nullptr) embreeApi.rtcReleaseScene(scene_);
     scene_ = nullptr;
   }
 
@@ -177,7 +196,7 @@ class EmbreePeer final : public Peer {
     });
     for (std::size_t i = 1; i < firsts.size(); ++i)
       for (std::size_t kind = 0; kind < kinds; ++kind) firsts[i][kind] += firsts[i - 1][kind];
-    scene_ = rtcNewScene(device_);
+    scene_ = embreeApi.rtcNewScene(device_);
     std::array<Target, kinds> targets;
     std::vector<RTCGeometry> geometries;
     for (std::size_t kind = 0; kind < kinds; ++kind)
@@ -190,20 +209,22 @@ class EmbreePeer final : public Peer {
       }
     });
     for (const RTCGeometry geometry : geometries) {
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometry(scene_, geometry);
-      rtcReleaseGeometry(geometry);
+      embreeApi.rtcCommitGeometry(geometry);
+      embreeApi.rtcAttachGeometry(scene_, geometry);
+      embreeApi.rtcReleaseGeometry(geometry);
     }
-    rtcCommitScene(scene_);
-    if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
+    embreeApi.rtcCommitScene(scene_);
+    if (const RTCError error = embreeApi.rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
       throw Error(Exit::usage, "--against embree: Embree cannot build the scene, error " + std::to_string(error));
   }
 
   RTCGeometry makeGeometry(std::size_t kind, std::size_t count, Target& target) {
     const auto newBuffer = [](RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t bytes,
-                              std::size_t n) { return rtcSetNewGeometryBuffer(geometry, type, 0, format, bytes, n); };
+                              std::size_t n) {
+      return embreeApi.rtcSetNewGeometryBuffer(geometry, type, 0, format, bytes, n);
+    };
     if (kind == sphere || kind == disc) {
-      const RTCGeometry geometry = rtcNewGeometry(
+      const RTCGeometry geometry = embreeApi.rtcNewGeometry(
           device_, kind == sphere ? RTC_GEOMETRY_TYPE_SPHERE_POINT : RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
       target.numbers =
           static_cast<float*>(newBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4 * sizeof(float), count));
@@ -214,7 +235,7 @@ class EmbreePeer final : public Peer {
     }
     if (const auto corners = static_cast<std::size_t>(kCorners[kind]); corners > 0) {
       const RTCGeometry geometry =
-          rtcNewGeometry(device_, kind == triangle ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_QUAD);
+          embreeApi.rtcNewGeometry(device_, kind == triangle ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_QUAD);
       target.numbers = static_cast<float*>(
           newBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3 * sizeof(float), corners * count));
       target.corners = static_cast<unsigned*>(newBuffer(geometry, RTC_BUFFER_TYPE_INDEX,
@@ -222,22 +243,22 @@ class EmbreePeer final : public Peer {
                                                         corners * sizeof(unsigned), count));
       return geometry;
     }
-    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
+    const RTCGeometry geometry = embreeApi.rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    embreeApi.rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
     UserKind& user = users_[kind];
     user.numbers.resize(count * static_cast<std::size_t>(kFloats[kind]));
     user.boxes.resize(count);
     user.solids.records = target.numbers = user.numbers.data();
-    rtcSetGeometryUserData(geometry, &user);
-    rtcSetGeometryBoundsFunction(
+    embreeApi.rtcSetGeometryUserData(geometry, &user);
+    embreeApi.rtcSetGeometryBoundsFunction(
         geometry,
         [](const RTCBoundsFunctionArguments* call) {
           *call->bounds_o = static_cast<const UserKind*>(call->geometryUserPtr)->boxes[call->primID];
         },
         nullptr);
-    rtcSetGeometryIntersectFunction(geometry, kind == plane ? kernels_.embreePlanes
-                                              : kind == box ? kernels_.embreeBoxes
-                                                            : kernels_.embreeQuadrics);
+    embreeApi.rtcSetGeometryIntersectFunction(geometry, kind == plane ? kernels_.embreePlanes
+                                                        : kind == box ? kernels_.embreeBoxes
+                                                                      : kernels_.embreeQuadrics);
     return geometry;
   }
 
@@ -277,6 +298,7 @@ class EmbreePeer final : public Peer {
 std::unique_ptr<Peer> embreePeer(const Scene& scene, int width, int height, bool packets, const Kernels* kernels) {
   if (kernels == nullptr)
     throw Error(Exit::usage, "--against embree: this CPU has neither AVX-512 nor AVX2 with FMA, expected one of them");
+  loadEmbree();
   return std::make_unique<EmbreePeer>(scene, width, height, packets, *kernels);
 }
 

@@ -63,7 +63,7 @@ void embree16(RTCSceneTy* scene, const RayView& rays, const Light& light, std::u
         store(every, packet.hit.geomID + i, RTC_INVALID_GEOMETRY_ID);
         store(every, packet.hit.instID[0] + i, RTC_INVALID_GEOMETRY_ID);
       }
-      rtcIntersect16(valid, scene, &context, &packet);
+      embreeApi.rtcIntersect16(valid, scene, &context, &packet);
       alignas(64) std::uint32_t colours[16];
       for (int i = 0; i < 16; i += kWide) {
         const V t = load(packet.ray.tfar + i);
@@ -92,7 +92,7 @@ void embree1(RTCSceneTy* scene, const RayView& rays, const Light& light, std::ui
         RTCRayHit one;
         one.ray = {at(0), at(1), at(2), 0, at(3), at(4), at(5), 0, kFar, ~0u, 0, 0};
         one.hit.geomID = one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene, &context, &one);
+        embreeApi.rtcIntersect1(scene, &context, &one);
         t[x] = one.ray.tfar;
         n[0][x] = one.hit.Ng_x, n[1][x] = one.hit.Ng_y, n[2][x] = one.hit.Ng_z;
       }

@@ -24,6 +24,8 @@ class Peer {
   virtual ~Peer() = default;
   virtual std::string name() const = 0;
   virtual std::string plan() const = 0;  // one line: how it works
+  /// From the start of a program to a file: to be held against nothing but its like.
+  virtual bool wholeProcess() const { return false; }
   /// Builds anew and traces.
   virtual Lap run() = 0;
   /// What the last run() made, 3 channels of 8 bits.

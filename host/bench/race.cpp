@@ -143,6 +143,7 @@ std::vector<Result> Race::run(int rounds, const std::function<void(double fracti
     } else {
       results[i].method = peers_[i - ours_.size()]->name();
       results[i].plan = peers_[i - ours_.size()]->plan();
+      results[i].wholeProcess = peers_[i - ours_.size()]->wholeProcess();
     }
   }
   return results;

@@ -29,7 +29,7 @@ class Times {
 
 struct Result {
   std::string method, plan;
-  bool ours = false;
+  bool ours = false, wholeProcess = false;
   /// Casting and storing 8-bit colours: ours by the device's clock, a peer's trace by the wall's.
   Times dispatch;
   Times dispatchCpu;  // the same in processor time of all threads: what remains true on a busy machine

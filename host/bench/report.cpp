@@ -81,20 +81,31 @@ std::string text(const SceneResults& scene) {
                                               "dispatch ms: min / median / max", "CPU ns/ray", "build ms",
                                               "image ms: min / median", "pixels off"}};
   for (const Result& r : scene.results)
-    rows.push_back(
-        {r.method, r.ours ? r.plan : "",
-         brief(mrays(scene, r.dispatch.median())) + " (" + brief(mrays(scene, r.dispatch.min())) + ")",
-         fixed(r.dispatch.min(), 2) + " / " + fixed(r.dispatch.median(), 2) + " / " + fixed(r.dispatch.max(), 2),
-         fixed(r.dispatchCpu.min() * 1e6 / (double(scene.width) * scene.height), 2), fixed(r.build.median(), 2),
-         fixed(r.image.min(), 2) + " / " + fixed(r.image.median(), 2), std::to_string(r.differing)});
+    if (!r.wholeProcess)
+      rows.push_back(
+          {r.method, r.ours ? r.plan : "",
+           brief(mrays(scene, r.dispatch.median())) + " (" + brief(mrays(scene, r.dispatch.min())) + ")",
+           fixed(r.dispatch.min(), 2) + " / " + fixed(r.dispatch.median(), 2) + " / " + fixed(r.dispatch.max(), 2),
+           fixed(r.dispatchCpu.min() * 1e6 / (double(scene.width) * scene.height), 2), fixed(r.build.median(), 2),
+           fixed(r.image.min(), 2) + " / " + fixed(r.image.median(), 2), std::to_string(r.differing)});
   out += markdown(rows);
 
   rows = {{"faster than", "dispatch: best (median)", "its CPU time", "image: best (median)"}};
   for (const Result& ours : scene.results)
     for (const Result& theirs : scene.results)
-      if (ours.ours && !theirs.ours)
+      if (ours.ours && !theirs.ours && !theirs.wholeProcess)
         rows.push_back({ours.method + " : " + theirs.method, ratio(theirs.dispatch, ours.dispatch),
                         ratio(theirs.dispatchCpu, ours.dispatchCpu), ratio(theirs.image, ours.image)});
+  if (rows.size() > 1) out.append("\n").append(markdown(rows));
+
+  // The last of the programs is the one that the others are held against.
+  rows = {{"whole process", "ms: min / median / max", "faster than the last: best (median)", "pixels off"}};
+  const Result& last = scene.results.back();
+  for (const Result& r : scene.results)
+    if (r.wholeProcess)
+      rows.push_back({r.method,
+                      fixed(r.image.min(), 1) + " / " + fixed(r.image.median(), 1) + " / " + fixed(r.image.max(), 1),
+                      ratio(last.image, r.image), std::to_string(r.differing)});
   if (rows.size() > 1) out.append("\n").append(markdown(rows));
 
   rows = {{"first image, ms", "whole", "flatten", "shader", "first dispatch", "all dispatches", "read back",

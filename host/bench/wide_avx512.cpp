@@ -3,7 +3,7 @@
 
 #include "host/bench/kernels.h"
 #ifdef SOLIDCAST_EMBREE
-#include <embree3/rtcore.h>
+#include "host/bench/embree_api.h"
 #endif
 
 namespace solidcast::bench::avx512 {

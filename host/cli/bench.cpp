@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "host/bench/left_out.h"
+#include "host/bench/processes.h"
 #include "host/bench/race.h"
 #include "host/bench/report.h"
 #include "host/bench/scenes.h"
@@ -25,7 +26,8 @@ bundled scene (a_solids), or random:KIND:COUNT[:SEED] as generate makes them. Wi
   pixels off  more than 1 level from what exact shows
   first image  the same with compilation (disk cache of the driver warm), by phases
 Peers: embree (Embree 3: rtcIntersect16 and rtcIntersect1; package libembree-dev), simd (hand-written AVX-512 or AVX2,
-for small scenes), cpu (the reference; --precision).
+for small scenes), cpu (the reference; --precision), povray (POV-Ray 3.7 from start to PNG file, beside this program's
+render from start to PNG file; package povray).
 
 Examples:
   solidcast bench
@@ -41,12 +43,12 @@ struct Bench {
   CastingOptions casting;
 };
 
-constexpr const char* kPeers[] = {"embree", "simd", "cpu"};
+constexpr const char* kPeers[] = {"embree", "simd", "cpu", "povray"};
 
 void checkPeers(const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (std::find(std::begin(kPeers), std::end(kPeers), name) == std::end(kPeers))
-      throw Error(Exit::usage, "--against: \"" + name + "\" is unknown, expected embree, simd or cpu");
+      throw Error(Exit::usage, "--against: \"" + name + "\" is unknown, expected embree, simd, cpu or povray");
 }
 
 std::vector<std::unique_ptr<bench::Peer>> peersFor(const Bench& options, const Scene& scene) {
@@ -64,6 +66,10 @@ std::vector<std::unique_ptr<bench::Peer>> peersFor(const Bench& options, const S
     peers.push_back(bench::simdPeer(scene, w, h, true));
   }
   if (asked("cpu")) peers.push_back(bench::referencePeer(scene, w, h, options.casting.precision));
+  if (asked("povray")) {
+    for (const char* method : {"fast", "exact"}) peers.push_back(bench::renderProcess(scene, w, h, method));
+    peers.push_back(bench::povrayProcess(scene, w, h));
+  }
   return peers;
 }
 
@@ -116,7 +122,7 @@ void addBench(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("bench", "measure speed, beside other ray casters");
   verb->footer(kFooter);
   verb->add_option("SCENE", options->scenes, "scenes (default: the bundled ones)");
-  verb->add_option("--against", options->against, "peers to measure beside: embree,simd,cpu (default: none)")
+  verb->add_option("--against", options->against, "peers to measure beside: embree,simd,cpu,povray (default: none)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("LIST");
