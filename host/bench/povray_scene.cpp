@@ -13,7 +13,7 @@ using Vec = glm::dvec3;
 Vec vec(const Triple& t) { return {t[0], t[1], t[2]}; }
 
 std::ostream& operator<<(std::ostream& out, const Vec& v) {
-  return out << '<' << v.x << ',' << v.y << ',' << v.z << '>';
+  return out << '<' << v.x + 0.0 << ',' << v.y + 0.0 << ',' << v.z + 0.0 << '>';  // no "-0"
 }
 
 struct Solids {
