@@ -4,6 +4,10 @@
 // METHOD 0 naive and 1 fast give the whole hit. METHOD 2 exact gives the solid, or that it is in doubt: t, normal and
 // local coordinates of that one solid are the host's, in binary128 (a query's text costs more than they do), and so
 // is the whole search for the few rays in doubt.
+//
+// INDEX: each kind's loop walks its tree of boxes (index.glsl). A ray that is not through after STEPS of them keeps what it
+// found and where it was, and goes on in another dispatch: llvmpipe stops all loops of an invocation's vector together
+// after 65535 rounds without a word.
 #extension GL_GOOGLE_include_directive : require
 
 #if METHOD == 2
@@ -24,7 +28,7 @@ layout(constant_id = 28) const float DOUBT = 0.0;  // bound of decidedAgainst()
 layout(push_constant) uniform Portion {
   uint rays;
   uint stage;  // bit 0: first portion of the solids, bit 1: last
-  uint count[7], firstRow[7];
+  uint count[7], firstRow[7];  // INDEX: the node after the kind's last; row of the place 0 in the index's order
 } portion;
 
 struct QueryRay {
@@ -47,8 +51,58 @@ layout(set = 0, binding = 3, std430) buffer Hits { QueryHit hits[]; };
 #if STORAGE
 struct Kept {
   real s, cosine, index, second, margin;
+#if INDEX
+  uint node;
+#endif
 };
 layout(set = 0, binding = 6, std430) buffer State { Kept state[]; };
+#endif
+
+#if METHOD == 0
+#define TEST(kind, row) kind##_naive(row, ray.origin, ray.direction, best)
+#define RAY NaiveRay
+struct NaiveRay {
+  vec3 origin, direction;
+};
+#else
+#define TEST(kind, row) kind##_free(row, ray, best)
+#define RAY FreeRay
+#endif
+
+#if INDEX
+#include "index.glsl"
+
+float inverseDistance(Found best) {
+#if METHOD == 0
+  return 1.0 / best.t;
+#else
+  return float(best.s);
+#endif
+}
+
+// Two loops, so that a vector of rays tries solids when all its rays have found a leaf. Whatever outlives the inner ones
+// is set before them and tested at their top: llvmpipe loses values that are first set in a loop which lanes leave apart.
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS)                                                  \
+  void kind##_walk(uint end, uint firstRow, RAY ray, BoxRay boxes, inout uint node, inout uint steps,          \
+                   inout Found best) {                                                                         \
+    while (node < end && steps < STEPS) {                                                                      \
+      float limit = limitOf(inverseDistance(best), boxes);                                                     \
+      uint leaf = 0u;                                                                                          \
+      while (leaf == 0u && node < end && steps < STEPS) {                                                      \
+        step(boxes, limit, node, leaf);                                                                        \
+        ++steps;                                                                                               \
+      }                                                                                                        \
+      uint row = firstRow + (leaf >> 4) * WORLD_ROWS, left = leaf & 15u;                                       \
+      while (left > 0u) {                                                                                      \
+        TEST(kind, row);                                                                                       \
+        row += WORLD_ROWS;                                                                                     \
+        --left;                                                                                                \
+      }                                                                                                        \
+      steps += leaf & 15u;                                                                                     \
+    }                                                                                                          \
+  }
+#include "solids.def"
+#undef SOLID
 #endif
 
 void main() {
@@ -56,7 +110,7 @@ void main() {
   if (i >= portion.rays) return;
   QueryRay given = rays[i];
 #if METHOD == 0
-  vec3 origin = given.origin.xyz, direction = given.direction.xyz;
+  NaiveRay ray = NaiveRay(given.origin.xyz, given.direction.xyz);
   Nearest best = Nearest(given.origin.w, 0.0, -1.0);
 #else
   FreeRay ray;
@@ -80,12 +134,20 @@ void main() {
   }
 #endif
 
-  uint next = 0u;
-#if METHOD == 0
-#define TEST(kind, row) kind##_naive(row, origin, direction, best)
+#if INDEX
+  uint node = (portion.stage & 1u) == 0u ? state[i].node : 0u, steps = 0u;
+  BoxRay boxes = boxRay(i, given.origin.xyz);
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) \
+  if (KIND##_COUNT > 0u) kind##_walk(portion.count[NUMBER], portion.firstRow[NUMBER], ray, boxes, node, steps, best);
+#include "solids.def"
+#undef SOLID
+  uint end = 0u;
+  for (int k = 0; k < 7; ++k) end = max(end, portion.count[k]);
+  bool through = node >= end;
+  if (!through) unfinished = 1u;
 #else
-#define TEST(kind, row) kind##_free(row, ray, best)
-#endif
+  bool through = (portion.stage & 2u) != 0u;
+  uint next = 0u;
 #define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) \
   if (KIND##_COUNT > 0u) {                                    \
     uint at = FIRST_ROW(NUMBER, next);                        \
@@ -97,15 +159,23 @@ void main() {
   }
 #include "solids.def"
 #undef SOLID
+#endif
 
 #if STORAGE
-  if ((portion.stage & 2u) == 0u) {
+#if INDEX
+  state[i].node = node;
+#endif
+  if (!through) {
+    state[i].cosine = best.cosine;
+    state[i].index = best.index;
 #if METHOD == 0
-    state[i] = Kept(best.t, best.cosine, best.index, 0.0, 0.0);
-#elif METHOD == 2
-    state[i] = Kept(best.s, best.cosine, best.index, best.second, best.margin);
+    state[i].s = best.t;
 #else
-    state[i] = Kept(best.s, best.cosine, best.index, number(0.0), number(0.0));
+    state[i].s = best.s;
+#endif
+#if METHOD == 2
+    state[i].second = best.second;
+    state[i].margin = best.margin;
 #endif
     return;
   }
@@ -125,7 +195,7 @@ void main() {
   vec3 normal = vec3(0.0), local = vec3(0.0), position = vec3(0.0);
 #if METHOD == 0
   hit.t = best.t;
-  precise vec3 point = origin + best.t * direction;
+  precise vec3 point = ray.origin + best.t * ray.direction;
 #else
   hit.t = toFloat(quotient(number(1.0), best.s));
   precise vec3 point = ray.origin + ray.direction / best.s;

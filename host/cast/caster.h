@@ -20,7 +20,8 @@ enum class Arithmetic { automatic, fp64, df32 };  // of `exact`
 /// have taken as long as that compilation, so that it never costs more than twice the best choice.
 /// baked: the records are constants of the pipeline. uniform, storage: they are in a buffer of that kind.
 /// tiles: in a storage buffer, a list for each tile of the screen.
-enum class Plan { automatic, baked, uniform, storage, tiles };
+/// index: in a storage buffer, with a tree of boxes (free rays).
+enum class Plan { automatic, baked, uniform, storage, tiles, index };
 
 struct CastOptions {
   Method method = Method::exact;
@@ -36,6 +37,7 @@ struct CastOptions {
 struct CastStats {
   double flatten_ms = 0, shader_ms = 0, first_dispatch_ms = 0, dispatch_ms = 0, readback_ms = 0, fallback_ms = 0;
   std::uint64_t rays = 0, fallbackRays = 0;
+  std::uint64_t dispatches = 0;  // of plan index: more than one a block where rays had to go on
   std::uint64_t deviceBytes = 0;
   int pipelines = 0;  // made so far
   std::string module;

@@ -9,7 +9,7 @@ namespace solidcast {
 
 std::unique_ptr<PixelSearch> makeSearch(const PassJob& job, const Scene& scene) {
   const double pixels = double(job.crop.width) * job.crop.height * job.samples * job.samples;
-  const PlanFacts facts = planFacts(job.device.info(), scene, job.program, pixels, job.options);
+  const PlanFacts facts = planFacts(job.device.info(), scene.world, job.program, pixels, job.options);
   const PlanChoice choice = choosePlan(facts, job.options.plan);
   job.stats.planName = planName(choice.plan);
   for (std::string& line : planLines(facts, choice, job.options.plan)) job.stats.plan.push_back(std::move(line));

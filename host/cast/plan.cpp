@@ -13,11 +13,8 @@ struct Name {
   Plan plan;
   const char* text;
 };
-constexpr Name names[] = {{Plan::automatic, "auto"},
-                          {Plan::baked, "baked"},
-                          {Plan::uniform, "uniform"},
-                          {Plan::storage, "storage"},
-                          {Plan::tiles, "tiles"}};
+constexpr Name names[] = {{Plan::automatic, "auto"},  {Plan::baked, "baked"}, {Plan::uniform, "uniform"},
+                          {Plan::storage, "storage"}, {Plan::tiles, "tiles"}, {Plan::index, "index"}};
 
 constexpr std::uint32_t mostBaked = 64;  // solids; compiling more takes seconds
 /// Wall ns that one ray and one solid take from a uniform buffer on two threads of the machine of performance-notes.md.
@@ -31,11 +28,20 @@ constexpr double bakedPart = 0.6;     // of a ray from a uniform buffer
 constexpr double storageTimes = 1.5;  // the same
 constexpr double pipelineMs = 15;     // from the driver's cache, as most are
 constexpr double flattenUs = 4;       // a solid, in binary128
+constexpr double indexUs = 0.7;       // a solid, on two threads
 
 std::uint32_t total(const PlanFacts& f) {
   std::uint32_t n = 0;
   for (std::uint32_t c : f.count) n += c;
   return n;
+}
+
+/// One free ray through an index, wall ns on two threads: the steps grow with the logarithm of the number of solids.
+double indexNs(const PlanFacts& f) {
+  double ns = 100;
+  for (std::size_t kind = 0; kind < kindCount; ++kind)
+    if (f.count[kind] > 0) ns += (kind == 0 ? 10.0 * f.count[kind] : 60 * std::log2(1.0 + f.count[kind]));
+  return ns * (f.program.real == RealType::f64 ? 1.5 : 1);
 }
 
 std::size_t recordBytes(const PlanFacts& f) {
@@ -65,7 +71,8 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
     case Plan::baked: {
       cost.prepare_ms = flatten + bakingMs(f.program.real, n) * (f.moving ? f.pictures : 1);
       cost.rays_ms = rays * perSolid * bakedPart * each;
-      if (!f.llvmpipe) cost.impossible = "only llvmpipe is known to keep every bit of constants";
+      if (f.program.job == Job::rays) cost.impossible = "for pictures only";
+      else if (!f.llvmpipe) cost.impossible = "only llvmpipe is known to keep every bit of constants";
       else if (f.program.real == RealType::df32) cost.impossible = "double-float takes seconds to compile";
       else if (n > mostBaked)
         cost.impossible = std::to_string(n) + " solids, at most " + std::to_string(mostBaked) + " are compiled";
@@ -88,7 +95,15 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
       const double bounded = n - f.count[0], listed = f.count[0] + std::min(bounded, 4 * std::cbrt(bounded));
       cost.prepare_ms = flatten + pipelineMs + f.pictures * (2 + 1e-3 * n);
       cost.rays_ms = rays * perSolid * storageTimes * (listed + 4);
-      if (!f.program.eye() && f.program.hits) cost.impossible = "normals of free rays need all records in one place";
+      if (f.program.job == Job::rays) cost.impossible = "free rays have no screen";
+      else if (!f.program.eye() && f.program.hits)
+        cost.impossible = "normals of free rays need all records in one place";
+      break;
+    }
+    case Plan::index: {
+      cost.prepare_ms = flatten + pipelineMs + indexUs * 1e-3 * n;
+      cost.rays_ms = rays * indexNs(f) * 1e-6;
+      if (f.program.job == Job::pixels) cost.impossible = "an index is for free rays (query)";
       break;
     }
     case Plan::automatic:
@@ -101,11 +116,11 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
 
 double bakingMs(RealType real, std::uint32_t solids) { return 20 + (real == RealType::f64 ? 20 : 10) * double(solids); }
 
-PlanFacts planFacts(const gpu::DeviceInfo& device, const Scene& scene, const Program& program, double pixels,
+PlanFacts planFacts(const gpu::DeviceInfo& device, const World& world, const Program& program, double pixels,
                     const CastOptions& options) {
   PlanFacts facts;
   facts.program = program;
-  for (const SolidEntry& solid : scene.world.solids) ++facts.count[static_cast<std::size_t>(kindNumber(solid.shape))];
+  for (const SolidEntry& solid : world.solids) ++facts.count[static_cast<std::size_t>(kindNumber(solid.shape))];
   facts.pixels = pixels;
   facts.pictures = options.pictures;
   facts.moving = options.moving;

@@ -14,7 +14,7 @@ namespace solidcast {
 struct PlanFacts {
   Program program;  // job, method, number type, camera, hits
   std::array<std::uint32_t, kindCount> count{};
-  double pixels = 0;    // of one picture, with all samples
+  double pixels = 0;    // of one picture, with all samples; free rays: of one block
   int pictures = 1;     // that the caster is made for
   bool moving = false;  // the camera or the scene changes from picture to picture
   bool llvmpipe = false;
@@ -38,7 +38,7 @@ struct PlanChoice {
 /// What compiling a pipeline with the records as constants costs, in ms, at most about (docs/performance-notes.md).
 double bakingMs(RealType real, std::uint32_t solids);
 
-PlanFacts planFacts(const gpu::DeviceInfo& device, const Scene& scene, const Program& program, double pixels,
+PlanFacts planFacts(const gpu::DeviceInfo& device, const World& world, const Program& program, double pixels,
                     const CastOptions& options);
 
 /// The cheapest plan that is possible, or the one that was asked for. Throws Exit::usage where that is impossible.

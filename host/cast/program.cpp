@@ -23,7 +23,7 @@ std::string Program::moduleName() const {
   std::string name = job == Job::pixels ? "pixels_" : "rays_";
   name += methodLabel(*this);
   if (job == Job::pixels) name += std::string("_") + cameras[camera];
-  if (storage) name += "_storage";
+  if (storage) name += index ? "_index" : "_storage";
   if (job == Job::pixels && hits) name += "_hits";
   return name;
 }
@@ -31,7 +31,8 @@ std::string Program::moduleName() const {
 gpu::Defines Program::defines() const {
   gpu::Defines d = {{"METHOD", std::to_string(static_cast<int>(method))},
                     {"ARITHMETIC", std::to_string(static_cast<int>(real))},
-                    {"STORAGE", storage ? "1" : "0"}};
+                    {"STORAGE", storage ? "1" : "0"},
+                    {"INDEX", index ? "1" : "0"}};
   if (job == Job::pixels) {
     d.emplace_back("CAMERA", std::to_string(camera));
     d.emplace_back("HITS", hits ? "1" : "0");

@@ -20,6 +20,7 @@ struct Program {
   RealType real = RealType::f64;
   int camera = 0;        // index of the Camera variant as pixels.comp numbers it
   bool storage = false;  // records in storage buffers, searched in portions
+  bool index = false;    // searched by an index (index.h); storage too
   bool hits = false;     // normals, local coordinates and points from the shader
   bool eye() const { return job == Job::pixels && method != Method::naive && camera != 2; }
 

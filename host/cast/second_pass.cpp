@@ -5,6 +5,7 @@
 #include <cmath>
 #include <thread>
 
+#include "host/cast/index.h"
 #include "host/cast/rational_pass.h"
 #include "host/cast/solids/all.h"
 
@@ -18,37 +19,34 @@ Cut cutOf(const Shape& shape, const RayQ& ray) {
 
 }  // namespace
 
-SecondPass::SecondPass(const World& world) : world_(world) {
-  balls_.reserve(world.solids.size());
-  for (const SolidEntry& solid : world.solids) {
-    Ball b = std::visit([](const auto& s) { return ball(s); }, solid.shape);
-    double size = std::abs(b.center[0]) + std::abs(b.center[1]) + std::abs(b.center[2]);
-    // 2^-40 of all sizes: far above fp64's rounding of the ball itself.
-    b.radius = b.radius < 0 || !std::isfinite(b.radius) ? -1 : b.radius + std::ldexp(b.radius + size, -40);
-    balls_.push_back(b);
+SecondPass::SecondPass(const World& world, const Index* index) : world_(world), index_(index) {}
+SecondPass::~SecondPass() = default;
+
+std::vector<SecondPass::Candidate> SecondPass::candidates(const RayQ& ray, f128 limit) const {
+  std::call_once(built_, [&] {
+    if (!index_) own_ = std::make_unique<Index>(buildIndex(world_)), index_ = own_.get();
+  });
+  const f128 length = solidcast::length(ray.direction);
+  double o[3], d[3], nearest = static_cast<double>(limit * length);
+  for (int k = 0; k < 3; ++k) {
+    o[k] = static_cast<double>(ray.origin[k]);
+    d[k] = static_cast<double>(ray.direction[k] / length);
   }
+  std::vector<Candidate> all;
+  IndexWalk(o, d).visit(*index_, nearest, [&](std::uint32_t solid) {
+    const Cut c = cutOf(world_.solids[solid].shape, ray);
+    if (!c.hit) return;
+    all.push_back({solid, c});
+    nearest = std::min(nearest, static_cast<double>(c.t * length));
+  });
+  std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.solid < b.solid; });
+  return all;
 }
 
 ExactHit SecondPass::cast(const RayQ& ray, std::optional<f128> tMax) const {
-  const double o[3] = {static_cast<double>(ray.origin.x), static_cast<double>(ray.origin.y),
-                       static_cast<double>(ray.origin.z)};
-  V3 unit = normalized(ray.direction);
-  const double d[3] = {static_cast<double>(unit.x), static_cast<double>(unit.y), static_cast<double>(unit.z)};
   ExactHit best;
-  for (std::size_t i = 0; i < balls_.size(); ++i) {
-    const Ball& ball = balls_[i];
-    if (ball.radius >= 0) {  // the ray passes the ball by: |f|^2 - (f.d)^2 > r^2, with fp64's rounding granted
-      double f[3], along = 0, square = 0;
-      for (int k = 0; k < 3; ++k) {
-        f[k] = ball.center[static_cast<std::size_t>(k)] - o[k];
-        along += f[k] * d[k];
-        square += f[k] * f[k];
-      }
-      if (square - along * along > ball.radius * ball.radius + 1e-12 * square) continue;
-    }
-    const Shape& shape = world_.solids[i].shape;
-    Cut c = cutOf(shape, ray);
-    if (!c.hit) continue;
+  for (const auto& [solid, c] : candidates(ray, tMax.value_or(HUGE_VALQ))) {
+    const Shape& shape = world_.solids[solid].shape;
     // Near the limit or the best so far, a free ray has rationals to tell; else they count as equal.
     if (tMax) {
       bool open = ray.rational && fabsq(c.t - *tMax) <= slack() * *tMax;
@@ -60,7 +58,7 @@ ExactHit SecondPass::cast(const RayQ& ray, std::optional<f128> tMax) const {
     } else if (best && c.t > best.t) {
       continue;
     }
-    best = {static_cast<std::int32_t>(i), c.t};
+    best = {static_cast<std::int32_t>(solid), c.t};
   }
   return best;
 }

@@ -4,6 +4,8 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -18,9 +20,14 @@ struct ExactHit {
   explicit operator bool() const { return index >= 0; }
 };
 
+struct Index;
+
 class SecondPass {
  public:
-  explicit SecondPass(const World& world);
+  /// `index` is that of the world, not widened; without one, many solids get one when the first ray is cast. Both must
+  /// outlive this.
+  explicit SecondPass(const World& world, const Index* index = nullptr);
+  ~SecondPass();
 
   /// Nearest hit with 0 < t < tMax; at equal t (exactly for rational rays, within binary128's rounding for others) the
   /// earlier solid.
@@ -32,8 +39,17 @@ class SecondPass {
   Surface surface(const RayQ& ray, const ExactHit& hit) const;
 
  private:
+  struct Candidate {
+    std::uint32_t solid;
+    Cut cut;
+  };
+  /// Every solid that the ray hits within `limit` (in its own lengths) and that may be nearest, by index.
+  std::vector<Candidate> candidates(const RayQ& ray, f128 limit) const;
+
   const World& world_;
-  std::vector<Ball> balls_;  // a ray that passes one by need not be tried
+  mutable const Index* index_;
+  mutable std::unique_ptr<Index> own_;
+  mutable std::once_flag built_;
 };
 
 /// Runs f(i) for 0 <= i < n on all cores; small n on this thread alone.

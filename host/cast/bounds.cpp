@@ -1,0 +1,111 @@
+// Corners and balls are the solids' own (host/cast/solids); what is told here is the ellipsoid.
+//
+// (p - c)'M(p - c) = k around c = -M^-1 l, k = -l.c - j, reaches sqrt(k (M^-1)_ii) along axis i. With M^-1 = adj(M)/det(M)
+// each of these is a sum of products of fp64 numbers, whose rounding in binary128 is some 2^-110 of the sum of its terms'
+// sizes. A quadric counts as bounded only where minors, determinant and cofactors keep 2^-40 of those sizes, so that
+// quotients are right to 2^-66, and everything is widened by 2^-60.
+#include "host/cast/bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/cast/solids/all.h"
+
+namespace solidcast {
+namespace {
+
+constexpr double farthest = 0x1p100;
+
+std::optional<Bounds> checked(Bounds b) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!(b.lo[i] >= -farthest && b.hi[i] <= farthest)) return std::nullopt;
+  return b;
+}
+
+/// `reach` is the size of the numbers that the interval was made from.
+void setAxis(Bounds& b, std::size_t i, double lo, double hi, double reach) {
+  b.lo[i] = lo - std::ldexp(reach, -48);
+  b.hi[i] = hi + std::ldexp(reach, -48);
+}
+
+template <class Solid>
+std::optional<Bounds> boundsOfSolid(const Solid& solid) {
+  Bounds b;
+  const Outline corners = outline(solid);
+  if (corners.count > 0) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      double lo = corners.points[0][i], hi = lo;
+      for (std::size_t p = 1; p < static_cast<std::size_t>(corners.count); ++p)
+        lo = std::min(lo, corners.points[p][i]), hi = std::max(hi, corners.points[p][i]);
+      setAxis(b, i, lo, hi, std::max(std::abs(lo), std::abs(hi)));
+    }
+    return checked(b);
+  }
+  const Ball round = ball(solid);
+  if (round.radius < 0) return std::nullopt;
+  for (std::size_t i = 0; i < 3; ++i)
+    setAxis(b, i, round.center[i] - round.radius, round.center[i] + round.radius,
+            std::abs(round.center[i]) + round.radius);
+  return checked(b);
+}
+
+/// Along axis i the disc reaches r sqrt(1 - n_i^2).
+std::optional<Bounds> boundsOfSolid(const Disc& disc) {
+  Bounds b;
+  const V3 n = normalized(V3(disc.normal));
+  for (int i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double reach = disc.radius * static_cast<double>(sqrtq(larger(0, 1 - n[i] * n[i])));
+    setAxis(b, at, disc.center[at] - reach, disc.center[at] + reach, std::abs(disc.center[at]) + disc.radius);
+  }
+  return checked(b);
+}
+
+std::optional<Bounds> boundsOfSolid(const Quadric& quadric) {
+  const QuadricForm q = quadricForm(quadric);
+  const f128 sign = q.M.xx < 0 ? -1 : 1, part = ldexpq(1, -40), wide = ldexpq(1, -60);
+  const f128 M[3][3] = {{sign * q.M.xx, sign * q.M.xy, sign * q.M.xz},
+                        {sign * q.M.xy, sign * q.M.yy, sign * q.M.yz},
+                        {sign * q.M.xz, sign * q.M.yz, sign * q.M.zz}};
+  const V3 l = sign * q.l;
+  f128 cofactor[3][3], size[3][3];  // and the sum of the magnitudes of its terms
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      const f128 plus = M[i1][k1] * M[i2][k2], minus = M[i1][k2] * M[i2][k1];
+      cofactor[i][k] = plus - minus, size[i][k] = fabsq(plus) + fabsq(minus);
+    }
+  f128 determinant = 0, terms = 0;
+  for (int k = 0; k < 3; ++k) determinant += M[0][k] * cofactor[0][k], terms += fabsq(M[0][k]) * size[0][k];
+  // Sylvester: definite when the leading minors are positive.
+  if (!(M[0][0] > 0) || !(determinant > part * terms)) return std::nullopt;
+  for (int i = 0; i < 3; ++i)
+    if (!(cofactor[i][i] > part * size[i][i])) return std::nullopt;
+
+  V3 center, uncertain;
+  f128 level = -sign * q.j, levelSize = fabsq(q.j);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      center[i] -= cofactor[i][k] * l[k] / determinant;
+      uncertain[i] += size[i][k] * fabsq(l[k]) / determinant;
+    }
+    level -= l[i] * center[i];
+    levelSize += fabsq(l[i]) * uncertain[i];
+  }
+  level = larger(0, level) + wide * levelSize;  // below 0 there is no surface: a box costs less than a case of its own
+  Bounds b;
+  for (int i = 0; i < 3; ++i) {
+    const f128 half = sqrtq(level * cofactor[i][i] / determinant), slack = wide * (uncertain[i] + half);
+    setAxis(b, static_cast<std::size_t>(i), static_cast<double>(center[i] - half - slack),
+            static_cast<double>(center[i] + half + slack), static_cast<double>(fabsq(center[i]) + half));
+  }
+  return checked(b);
+}
+
+}  // namespace
+
+std::optional<Bounds> boundsOf(const Shape& shape) {
+  return std::visit([](const auto& s) { return boundsOfSolid(s); }, shape);
+}
+
+}  // namespace solidcast
