@@ -1,4 +1,4 @@
-// The walk through an index (host/cast/index.h): boxes in boxes, nodes in the order of the walk, no stack.
+// The walk through an index (host/cast/index.h): boxes in boxes, the nearer child first, no stack.
 //
 // Conservative. With m the ray's power of two (indexRay()), a box's bounds are reached at t m = (bound - o) times `near` or
 // `far`, whose margins of 2^-22 cover the roundings of the difference, the factor and the product, 2^-24 each: what is
@@ -13,12 +13,13 @@
 #define SOLIDCAST_INDEX
 
 struct Node {
-  uvec4 lo, hi;  // as bits of floats, and: the node after all below, 16 * place + number of solids (0: no leaf)
+  uvec4 lo, hi;  // as bits of floats, and: 4 * upper child + axis, 16 * place + number of solids (0: no leaf)
 };
 struct IndexRay {
   vec4 near, far;  // and in near.w what brings s to their units
 };
 layout(set = 0, binding = 0, std430) readonly buffer Nodes { Node nodes[]; };
+layout(set = 0, binding = 8, std430) readonly buffer Skips { uint skips[]; };  // by octant: the node after all below
 layout(set = 0, binding = 4, std430) readonly buffer IndexRays { IndexRay indexRays[]; };
 layout(set = 0, binding = 5, std430) buffer Unfinished { uint unfinished; };  // 1: some ray is not through
 
@@ -36,11 +37,14 @@ struct BoxRay {
   vec3 origin, near, far;
   bvec3 ahead;  // where the lower bound is the nearer one
   float toUnits;
+  uint octant;
 };
 
 BoxRay boxRay(uint i, vec3 origin) {
   IndexRay r = indexRays[i];
-  return BoxRay(origin, r.near.xyz, r.far.xyz, greaterThan(r.near.xyz, vec3(0.0)), r.near.w);
+  bvec3 ahead = greaterThan(r.near.xyz, vec3(0.0));
+  uint octant = (ahead.x ? 0u : 1u) | (ahead.y ? 0u : 2u) | (ahead.z ? 0u : 4u);
+  return BoxRay(origin, r.near.xyz, r.far.xyz, ahead, r.near.w, octant);
 }
 
 float limitOf(float s, BoxRay ray) {
@@ -64,6 +68,9 @@ void step(BoxRay ray, float limit, inout uint node, inout uint leaf) {
   precise float part = enter * limit;
   bool met = enter <= leave && !(part > BEYOND);
   leaf = met ? n.hi.w : 0u;
-  node = met && n.hi.w == 0u ? node + 1u : n.lo.w;
+  bool upperFirst = ((ray.octant >> (n.lo.w & 3u)) & 1u) != 0u;
+  uint child = upperFirst ? n.lo.w >> 2 : node + 1u;
+  uint skip = skips[8u * node + ray.octant];
+  node = met && n.hi.w == 0u ? child : skip;
 }
 #endif

@@ -117,8 +117,10 @@ class Builder {
     const std::size_t here = nodes.size();
     nodes.emplace_back();
     std::copy_n(box.lo, 3, nodes[here].lo), std::copy_n(box.hi, 3, nodes[here].hi);
-    nodes[here].leaf = 0;
-    const std::size_t middle = part.size() > 1 ? first + divide(part, box, depth) : first;
+    nodes[here].leaf = nodes[here].link = 0;
+    int axis = 0;
+    std::uint32_t upper = 0;
+    const std::size_t middle = part.size() > 1 ? first + divide(part, box, depth, axis) : first;
     if (middle == first) {
       std::sort(part.begin(), part.end(), [](const Item& a, const Item& b) { return a.solid < b.solid; });
       nodes[here].leaf = static_cast<std::uint32_t>(16 * (firstPlace_ + first) + part.size());
@@ -128,21 +130,25 @@ class Builder {
       append(nodes, first, middle, depth + 1, threads - threads / 2);
       helper.join();
       const auto from = static_cast<std::uint32_t>(nodes.size());
-      for (IndexNode& node : right) node.skip += from;
+      for (IndexNode& node : right)
+        if (node.leaf == 0) node.link += 4 * from;
       nodes.insert(nodes.end(), right.begin(), right.end());
+      upper = from;
     } else {
       append(nodes, first, middle, depth + 1, 1);
+      upper = static_cast<std::uint32_t>(nodes.size());
       append(nodes, middle, last, depth + 1, 1);
     }
-    nodes[here].skip = static_cast<std::uint32_t>(nodes.size());
+    if (nodes[here].leaf == 0) nodes[here].link = 4 * upper + static_cast<std::uint32_t>(axis);
   }
 
-  /// Sorts the solids into two sides; number of those on the left, 0: a leaf.
-  static std::size_t divide(std::span<Item> part, const Box& box, int depth) {
+  /// Sorts the solids into two sides of an axis; number of those on the lower, 0: a leaf.
+  static std::size_t divide(std::span<Item> part, const Box& box, int depth, int& axis) {
     const Split split = depth < deepest ? bestSplit(part, std::max(box.area(), 1e-300)) : Split{};
     if (part.size() <= mostInLeaf && !(split.cost < static_cast<double>(part.size()))) return 0;
     std::size_t left = 0;
     if (split.axis >= 0) {
+      axis = split.axis;
       const auto right =
           std::partition(part.begin(), part.end(), [&](const Item& i) { return split.binOf(i) <= split.bin; });
       left = static_cast<std::size_t>(right - part.begin());
@@ -169,6 +175,22 @@ Box boxOf(const Bounds& bounds, double widened) {
   return box;
 }
 
+/// Of the tree that begins at `root` and is the last so far.
+void addSkips(Index& index, std::size_t root) {
+  index.skips.resize(8 * index.nodes.size(), static_cast<std::uint32_t>(index.nodes.size()));
+  for (std::size_t at = root; at < index.nodes.size(); ++at) {
+    const IndexNode& node = index.nodes[at];
+    if (node.leaf != 0) continue;
+    const auto lower = static_cast<std::uint32_t>(at + 1), upper = node.link / 4;
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      const bool upperFirst = octant >> node.link % 4 & 1;
+      const std::uint32_t first = upperFirst ? upper : lower, second = upperFirst ? lower : upper;
+      index.skips[8 * first + octant] = second;
+      index.skips[8 * second + octant] = index.skips[8 * at + octant];
+    }
+  }
+}
+
 }  // namespace
 
 Index buildIndex(const World& world, double widened, unsigned threads) {
@@ -189,19 +211,22 @@ Index buildIndex(const World& world, double widened, unsigned threads) {
     index.firstPlace[kind] = static_cast<std::uint32_t>(index.order.size());
     for (std::size_t i = 0; i < always[kind].size(); i += mostInLeaf) {
       const std::size_t n = std::min<std::size_t>(mostInLeaf, always[kind].size() - i);
-      const auto next = static_cast<std::uint32_t>(index.nodes.size() + 1);
       index.nodes.push_back({{-everything, -everything, -everything},
-                             next,
+                             0,
                              {everything, everything, everything},
                              static_cast<std::uint32_t>(16 * (index.order.size() + i) + n)});
+      const auto next = static_cast<std::uint32_t>(index.nodes.size());
+      index.skips.insert(index.skips.end(), 8, next);
     }
     index.order.insert(index.order.end(), always[kind].begin(), always[kind].end());
     const auto from = static_cast<std::uint32_t>(index.nodes.size());
     if (!bounded[kind].empty()) {
       Builder builder(bounded[kind], static_cast<std::uint32_t>(index.order.size()));
       std::vector<IndexNode> tree = builder.build(threads);
-      for (IndexNode& node : tree) node.skip += from;
+      for (IndexNode& node : tree)
+        if (node.leaf == 0) node.link += 4 * from;
       index.nodes.insert(index.nodes.end(), tree.begin(), tree.end());
+      addSkips(index, from);
     }
     for (const Item& item : bounded[kind]) index.order.push_back(item.solid);
     index.end[kind] = static_cast<std::uint32_t>(index.nodes.size());

@@ -1,6 +1,7 @@
 // The index of a group: which solids a ray may hit, from boxes in boxes. One tree for each kind of solid, so that a leaf
-// is searched by one kind's code; nodes lie in the order of a walk from the left, and `skip` says where the walk goes on
-// when a node is passed by, so that it needs no stack. After a kind's tree comes the next kind's.
+// is searched by one kind's code. Walks need no stack: for each of the eight octants that a direction may lie in, `skip`
+// says which node comes after this one and all below it, the nearer child before the farther, so that the first hits
+// are near and the rest of the tree is passed by. After a kind's tree comes the next kind's.
 //
 // Never drops a hit. Solids' bounds are wider than the truth (bounds.h). A node's box holds those of its solids with at
 // least 2^-100 to spare on each side, rounded outwards to fp32. The walks (below, and shaders/index.glsl) state what their
@@ -20,16 +21,17 @@ namespace solidcast {
 /// As shaders/index.glsl reads it.
 struct IndexNode {
   float lo[3];
-  std::uint32_t skip;  // the node after this one and all below it
+  std::uint32_t link;  // 4 * the upper child + the axis that divides; the lower child is the next node
   float hi[3];
-  std::uint32_t leaf;  // 16 * place in the order + number of solids, 1 to 8; 0: no leaf, its first child comes next
+  std::uint32_t leaf;  // 16 * place in the order + number of solids, 1 to 8; 0: no leaf
 };
 static_assert(sizeof(IndexNode) == 32);
 
 inline constexpr std::uint32_t mostInLeaf = 8;
 
 struct Index {
-  std::vector<IndexNode> nodes;
+  std::vector<IndexNode> nodes;                              // parents before children, lower before upper
+  std::vector<std::uint32_t> skips;                          // eight a node; bit k of an octant: negative along axis k
   std::vector<std::uint32_t> order;                          // solids, kind by kind, as leaves name them
   std::array<std::uint32_t, kindCount> firstPlace{}, end{};  // of each kind: in `order`; the node after its last
 };
@@ -50,6 +52,7 @@ class IndexWalk {
   IndexWalk(const double (&origin)[3], const double (&direction)[3]) {
     for (int k = 0; k < 3; ++k) {
       o_[k] = origin[k], d_[k] = direction[k];
+      octant_ |= static_cast<std::size_t>(direction[k] < 0) << k;
       reach_ += std::abs(origin[k]);
     }
   }
@@ -62,7 +65,8 @@ class IndexWalk {
       const bool met = meets(node, limit);
       if (met)
         for (std::uint32_t i = 0; i < node.leaf % 16; ++i) f(index.order[node.leaf / 16 + i]);
-      at = met && node.leaf == 0 ? at + 1 : node.skip;
+      const bool upperFirst = octant_ >> node.link % 4 & 1;
+      at = !met || node.leaf != 0 ? index.skips[8 * at + octant_] : upperFirst ? node.link / 4 : at + 1;
     }
   }
 
@@ -84,6 +88,7 @@ class IndexWalk {
   }
 
   double o_[3], d_[3], reach_ = 0;
+  std::size_t octant_ = 0;
 };
 
 /// A ray as shaders/index.glsl walks it: what (bound - origin) is multiplied by, nearer and farther bound of each axis, and

@@ -28,7 +28,13 @@ constexpr double bakedPart = 0.6;     // of a ray from a uniform buffer
 constexpr double storageTimes = 1.5;  // the same
 constexpr double pipelineMs = 15;     // from the driver's cache, as most are
 constexpr double flattenUs = 4;       // a solid, in binary128
-constexpr double indexUs = 0.7;       // a solid, on two threads
+constexpr double indexUs = 0.5;       // a solid, on two threads
+constexpr double queryNs = 1.6;       // a free ray of a query and a solid, any method, from a uniform buffer
+
+double perSolidNs(const Program& p) {
+  if (p.job == Job::rays) return queryNs;
+  return solidNs(p) * (p.eye() ? 1 : freeRays);
+}
 
 std::uint32_t total(const PlanFacts& f) {
   std::uint32_t n = 0;
@@ -36,12 +42,15 @@ std::uint32_t total(const PlanFacts& f) {
   return n;
 }
 
-/// One free ray through an index, wall ns on two threads: the steps grow with the logarithm of the number of solids.
+/// One free ray through an index, wall ns on two threads: steps grow with the logarithm of the number of solids, and what
+/// they load leaves one cache after the other. Solids without bounds are all tried.
 double indexNs(const PlanFacts& f) {
-  double ns = 100;
-  for (std::size_t kind = 0; kind < kindCount; ++kind)
-    if (f.count[kind] > 0) ns += (kind == 0 ? 10.0 * f.count[kind] : 60 * std::log2(1.0 + f.count[kind]));
-  return ns * (f.program.real == RealType::f64 ? 1.5 : 1);
+  double ns = 0;
+  for (std::size_t kind = 0; kind < kindCount; ++kind) {
+    const double n = f.count[kind];
+    if (n > 0) ns += kind == 0 ? 4 * n : 60 + 25 * std::log2(1 + n) + 2 * std::sqrt(n);
+  }
+  return ns;
 }
 
 std::size_t recordBytes(const PlanFacts& f) {
@@ -64,7 +73,7 @@ std::string number(double v) {
 PlanCost costOf(Plan plan, const PlanFacts& f) {
   const std::uint32_t n = total(f);
   const std::size_t bytes = recordBytes(f);
-  const double rays = f.pixels * f.pictures, perSolid = solidNs(f.program) * (f.program.eye() ? 1 : freeRays) * 1e-6;
+  const double rays = f.pixels * f.pictures, perSolid = perSolidNs(f.program) * 1e-6;
   const double flatten = flattenUs * 1e-3 * n * (f.moving ? f.pictures : 1), each = std::max(1.0, double(n));
   PlanCost cost{plan};
   switch (plan) {

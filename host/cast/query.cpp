@@ -49,7 +49,7 @@ struct QueryCaster::Impl {
   std::uint32_t lastRays = 0;  // of the last block
   CastStats stats;
 
-  Impl(gpu::Device& d, const World& w, const CastOptions& o) : device(d), options(o), buffers(8) {
+  Impl(gpu::Device& d, const World& w, const CastOptions& o) : device(d), options(o), buffers(9) {
     std::string why;
     program.job = Job::rays;
     program.method = options.method;
@@ -99,6 +99,7 @@ struct QueryCaster::Impl {
       buffers[6] = device.makeBuffer(search.size() > 1 || program.index ? blockRays * 48 : 64, storage);
     if (program.index) {
       buffers[0] = filledBuffer(device, std::as_bytes(std::span(index->nodes)), storage);
+      buffers[8] = filledBuffer(device, std::as_bytes(std::span(index->skips)), storage);
       buffers[4] = device.makeBuffer(blockRays * sizeof(IndexRay), storage);
       buffers[5] = device.makeBuffer(16, gpu::BufferUse::readback);
     }

@@ -97,6 +97,7 @@ void run(const CLI::App& verb, const Query& query) {
   }
   const std::unique_ptr<gpu::Device> device = openDevice(query.casting);
   QueryCaster caster(*device, scene.world, query.casting.cast);
+  printPlan(query.casting, caster.stats());
   streamWith([&](std::span<const QueryRay> some, std::span<QueryHit> hits) { caster.cast(some, hits); });
 }
 
@@ -122,6 +123,7 @@ void addQuery(CLI::App& app) {
   verb->add_flag("--hex", query->hex, "print numbers as strings of hex floats");
   addBackend(*verb, query->backend);
   addCastingOptions(*verb, query->casting);
+  addPlan(*verb, query->casting);
   verb->callback([verb, query] { run(*verb, *query); });
 }
 

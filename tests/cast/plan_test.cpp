@@ -58,6 +58,19 @@ TEST(Plan, FewSolidsNeverGoByTiles) {
   }
 }
 
+TEST(Plan, FreeRaysGetAnIndexWhereItPays) {
+  PlanFacts f = facts(9);
+  f.program.job = Job::rays;
+  f.pixels = 65536;
+  EXPECT_EQ(choosePlan(f, Plan::automatic).plan, Plan::uniform) << "no index for nine solids";
+  for (const std::uint32_t n : {1000u, 100000u, 1000000u}) {
+    f.count[1] = n;
+    EXPECT_EQ(choosePlan(f, Plan::automatic).plan, Plan::index);
+  }
+  for (const Plan plan : {Plan::baked, Plan::tiles}) EXPECT_THROW(choosePlan(f, plan), Error);
+  EXPECT_THROW(choosePlan(facts(1000), Plan::index), Error) << "pictures have none";
+}
+
 TEST(Plan, WhatWasAskedForIsDoneOrRefusedWithTheNumbers) {
   for (const Plan plan : {Plan::baked, Plan::uniform, Plan::storage}) EXPECT_EQ(choosePlan(facts(9), plan).plan, plan);
   try {
