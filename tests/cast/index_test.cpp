@@ -267,8 +267,8 @@ TEST_P(Indexed, HardBoxes) {
   }
 }
 
-// Each vector of rays tries 300 nested spheres of 8 a leaf at least: rays part within the walk's inner loop, and the
-// values that the loop leaves behind are used after it (a compiler trap: see rays.comp).
+// Spheres of many sizes, so that the rays of a vector leave the walk's inner loop at different times while what it leaves
+// behind is used after it: values first set inside it would be overwritten (see rays.comp).
 TEST_P(Indexed, RaysThatLeaveTheInnerLoopAtDifferentTimes) {
   std::vector<Shape> shapes;
   for (int i = 0; i < 700; ++i)

@@ -2,8 +2,6 @@
 // docs/performance-notes.md. Not a part of ctest: times are for people.
 //
 //     query_speed KIND MOST [METHOD...]
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <random>
@@ -12,17 +10,10 @@
 #include "host/cast/index.h"
 #include "host/error.h"
 #include "host/scene/random.h"
+#include "tests/cast/speed/cpu_time.h"
 
 namespace solidcast {
 namespace {
-
-/// Of all threads: wall time would count other work of the machine.
-double cpuMilliseconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  auto ms = [](const timeval& t) { return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_usec) / 1e3; };
-  return ms(usage.ru_utime) + ms(usage.ru_stime);
-}
 
 /// From anywhere within the cloud's surroundings to anywhere in it: no two have anything in common.
 std::vector<QueryRay> freeRays(std::size_t n) {

@@ -1,8 +1,6 @@
 // What a ray of a scene costs, by method, from a uniform buffer and baked: the table of docs/performance-notes.md.
 // Not a part of ctest: times are for people. One dispatch of each after the other, round after round, so that a machine
 // with other work slows all alike; CPU time of the process, because wall time counts the others' work too.
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -10,16 +8,10 @@
 #include "host/cast/caster.h"
 #include "host/error.h"
 #include "host/scene/load.h"
+#include "tests/cast/speed/cpu_time.h"
 
 namespace solidcast {
 namespace {
-
-double cpuMilliseconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  auto ms = [](const timeval& t) { return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_usec) / 1e3; };
-  return ms(usage.ru_utime) + ms(usage.ru_stime);
-}
 
 struct Contestant {
   const char* name;
