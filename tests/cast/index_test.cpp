@@ -278,21 +278,24 @@ TEST_P(Indexed, RaysThatLeaveTheInnerLoopAtDifferentTimes) {
   EXPECT_GT(d.hits, 2000u);
 }
 
-// A ray through the middle of 70,000 shells from inside out has to try each of them: more rounds than llvmpipe allows an
-// invocation, so that the ray must go on in further dispatches.
+// A ray from the middle of 70,000 shells has to try each of them: more rounds than llvmpipe allows an invocation, so that
+// the ray must go on in further dispatches. The nearest is first in one world and last in the other.
 TEST_P(Indexed, MoreSolidsOnARayThanLlvmpipeHasRounds) {
-  std::vector<Shape> shapes;
   const int n = 70000;
-  for (int i = 0; i < n; ++i) shapes.push_back(ballAt(0, 0, 0, 2 + 1e-5 * (n - i)));
-  const World world = worldOf(shapes);
-  const std::vector<QueryRay> rays{{{0, 0, 0}, {0, 0, -1}}, {{0.5, 0, 0}, {1, 2, 3}}, {{0, 0, 9}, {0, 0, -1}}};
-  std::vector<QueryHit> hits(rays.size());
-  QueryCaster caster(device(), world, {.method = GetParam(), .plan = Plan::index});
-  caster.cast(rays, hits);
-  EXPECT_EQ(hits[0].index, n - 1);
-  EXPECT_EQ(hits[1].index, n - 1);
-  EXPECT_EQ(hits[2].index, 0);
-  EXPECT_GT(caster.stats().dispatches, 5u);
+  for (const bool lastIsNearest : {true, false}) {
+    std::vector<Shape> shapes;
+    for (int i = 0; i < n; ++i) shapes.push_back(ballAt(0, 0, 0, 2 + 1e-5 * (lastIsNearest ? n - i : i + 1)));
+    const World world = worldOf(shapes);
+    const std::vector<QueryRay> rays{{{0, 0, 0}, {0, 0, -1}}, {{0.5, 0, 0}, {1, 2, 3}}, {{0, 0, 9}, {0, 0, -1}}};
+    std::vector<QueryHit> hits(rays.size());
+    QueryCaster caster(device(), world, {.method = GetParam(), .plan = Plan::index});
+    caster.cast(rays, hits);
+    const int nearest = lastIsNearest ? n - 1 : 0;
+    EXPECT_EQ(hits[0].index, nearest);
+    EXPECT_EQ(hits[1].index, nearest);
+    EXPECT_EQ(hits[2].index, n - 1 - nearest);
+    EXPECT_GT(caster.stats().dispatches, 65535u / 1600) << "one dispatch cannot have had the rounds";
+  }
 }
 
 TEST_F(OnDevice, TheIndexOfExactWithoutFp64) {
