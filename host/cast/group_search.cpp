@@ -15,8 +15,8 @@ constexpr std::uint32_t mostHeld = 16;
 
 /// Pixels of an invocation. More share more, until the registers are full: the state of `exact` is twice as large, and
 /// constants need none. Double-float takes seconds to compile even for four.
-std::uint32_t raysOf(const Program& p, std::uint32_t solids, bool baked) {
-  if (!p.eye() || p.storage || p.hits || p.real == RealType::df32 || solids > mostHeld) return 4;
+std::uint32_t raysOf(const Program& p, std::uint32_t solids, bool baked, bool wide) {
+  if (!wide || !p.eye() || p.storage || p.hits || p.real == RealType::df32 || solids > mostHeld) return 4;
   return p.method == Method::fast && baked ? 16 : 8;
 }
 
@@ -37,6 +37,7 @@ GroupSearch::GroupSearch(const PassJob& job, const Scene& scene, const PlanChoic
       program_(job.program),
       asked_(choice.plan),
       bakeAtOnce_(choice.plan == Plan::baked),
+      wide_(choice.wide),
       buffers_(8) {
   if (choice.plan == Plan::baked || choice.bakeLater) bakingCosts_ = choice.bakingMs;
   setScene(scene);
@@ -113,9 +114,9 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   constants[doubt] = bits(doubtOf(program_));
   constants[hitsInDoubt] = program_.method == Method::exact && program_.real == RealType::f32;
   solids_ = search.solids();
-  constants[held] =
-      !bakeAtOnce_ && program_.eye() && !program_.storage && program_.real != RealType::df32 && solids_ <= mostHeld;
-  constants[rays] = raysOf(program_, solids_, bakeAtOnce_);
+  constants[held] = wide_ && !bakeAtOnce_ && program_.eye() && !program_.storage && program_.real != RealType::df32 &&
+                    solids_ <= mostHeld;
+  constants[rays] = raysOf(program_, solids_, bakeAtOnce_, wide_);
   const bool same = pipeline_ && constants == constants_ && !bakeAtOnce_;
   if (same) return;
   constants_ = std::move(constants);
@@ -140,7 +141,7 @@ void GroupSearch::bake() {
     if (!buffers_[binding].bytes().empty() && !(binding == 1 && program_.hits))
       contents[binding] = buffers_[binding].bytes();
   constants_[held] = false;
-  constants_[rays] = raysOf(program_, solids_, true);
+  constants_[rays] = raysOf(program_, solids_, true, true);
   usePipeline(gpu::baked(spirv_, contents));
   job_.stats.plan.push_back("records baked into the pipeline as constants");
   job_.stats.planName = planName(Plan::baked);

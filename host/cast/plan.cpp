@@ -23,8 +23,11 @@ double solidNs(const Program& p) {
   if (p.method == Method::fast) return 0.30;
   return p.real == RealType::f64 ? 0.53 : p.real == RealType::df32 ? 10 : 0.5;
 }
-constexpr double freeRays = 2.5;      // orthographic cameras: times the above
-constexpr double bakedPart = 0.6;     // of a ray from a uniform buffer
+constexpr double freeRays = 2.5;    // orthographic cameras: times the above
+constexpr double bakedPart = 0.45;  // of a ray from a uniform buffer
+constexpr double widePart = 0.7;    // the same with 8 rays an invocation and records held
+// More rays an invocation save about 1 ns a ray and take up to 20 ms longer to compile with a warm cache, 100 ms without.
+constexpr double fewestWide = 2e7;
 constexpr double storageTimes = 1.5;  // the same
 constexpr double pipelineMs = 15;     // from the driver's cache, as most are
 constexpr double flattenUs = 4;       // a solid, in binary128
@@ -89,7 +92,7 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
     }
     case Plan::uniform:
       cost.prepare_ms = flatten + pipelineMs;
-      cost.rays_ms = rays * perSolid * each;
+      cost.rays_ms = rays * perSolid * each * (rays >= fewestWide ? widePart : 1);
       if (bytes > f.uniformRange)
         cost.impossible =
             std::to_string(bytes) + " bytes of records, at most " + std::to_string(f.uniformRange) + " fit";
@@ -154,6 +157,7 @@ PlanChoice choosePlan(const PlanFacts& facts, Plan asked) {
     throw Error(Exit::usage, std::string("--plan ") + planName(best.plan) + ": not possible here: " + best.impossible);
   PlanChoice choice;
   choice.plan = best.plan;
+  choice.wide = best.plan == Plan::baked || facts.pixels * facts.pictures >= fewestWide;
   choice.bakingMs = bakingMs(facts.program.real, total(facts));
   choice.bakeLater = asked == Plan::automatic && best.plan == Plan::uniform && !facts.moving &&
                      costOf(Plan::baked, facts).impossible.empty();
@@ -173,6 +177,7 @@ std::vector<std::string> planLines(const PlanFacts& facts, const PlanChoice& cho
     else line += "not possible: " + cost.impossible;
     lines.push_back(line);
   }
+  if (choice.wide) lines.push_back("many rays an invocation: so many rays repay the longer compilation");
   if (choice.bakeLater)
     lines.push_back("baked once dispatches have taken " + number(choice.bakingMs) + " ms, should it come to that");
   return lines;

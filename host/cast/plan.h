@@ -30,6 +30,7 @@ struct PlanCost {
 
 struct PlanChoice {
   Plan plan;
+  bool wide = false;       // so many rays that more of them in one invocation, slower to compile, pay
   bool bakeLater = false;  // change over to `baked` once dispatches have taken bakingMs
   double bakingMs = 0;
   std::vector<PlanCost> costs;  // of all plans, the chosen one first

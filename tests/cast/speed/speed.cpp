@@ -30,8 +30,8 @@ void run(const std::string& file, int width, int height, int rounds) {
   for (const Plan plan : {Plan::uniform, Plan::baked})
     for (const auto& [name, method] :
          {std::pair{"naive", Method::naive}, std::pair{"fast", Method::fast}, std::pair{"exact", Method::exact}})
-      all.push_back(
-          {name, std::make_unique<ImageCaster>(device, scene, job, CastOptions{.method = method, .plan = plan})});
+      all.push_back({name, std::make_unique<ImageCaster>(
+                               device, scene, job, CastOptions{.method = method, .plan = plan, .pictures = 1000})});
   for (int round = 0; round <= rounds; ++round)
     for (Contestant& one : all) {
       const double before = cpuMilliseconds();
