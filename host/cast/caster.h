@@ -1,5 +1,6 @@
 // Scene -> plan -> records -> pipeline -> dispatches -> bands or hits. The GPU side's two calls.
 #pragma once
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
@@ -41,6 +42,7 @@ struct CastStats {
   std::uint64_t deviceBytes = 0;
   int pipelines = 0;  // made so far
   std::string module;
+  std::vector<std::filesystem::path> files;               // that the shaders were compiled from; none: as carried
   std::size_t spirvBytes = 0, specialisedSpirvBytes = 0;  // as written, and as the driver got it
   std::string planName;                                   // of the last pass: "baked", "uniform", ...
   std::vector<std::string> plan;                          // lines: what was decided, and why

@@ -120,7 +120,12 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   const bool same = pipeline_ && constants == constants_ && !bakeAtOnce_;
   if (same) return;
   constants_ = std::move(constants);
-  spirv_ = programSpirv(program_, job_.options);
+  if (const std::string name = program_.moduleName(); name != compiled_) {
+    gpu::CompiledModule module = programModule(program_, job_.options);
+    job_.stats.files.insert(job_.stats.files.end(), module.files.begin(), module.files.end());
+    spirv_ = std::move(module.spirv);
+    compiled_ = name;
+  }
   if (bakeAtOnce_) bake();
   else usePipeline(constants_.at(held) ? gpu::baked(spirv_, {}) : spirv_);  // baked: with its loops unrolled
 }

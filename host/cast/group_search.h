@@ -41,7 +41,8 @@ class GroupSearch : public PixelSearch {
   std::optional<Records> tiledSearch_;  // what tiles are made from
   std::vector<TileSearch> tiles_;       // of the band that starts at tiledRow_; empty: the whole band at once
   int tiledRow_ = -1, tileRows_ = 0;
-  std::vector<std::uint32_t> spirv_;
+  std::string compiled_;              // name of the module in spirv_
+  std::vector<std::uint32_t> spirv_;  // before constants are set
   gpu::Specialisation constants_;
   std::uint32_t solids_ = 0;
   std::optional<gpu::Pipeline> pipeline_;

@@ -93,14 +93,13 @@ float doubtOf(const Program& program) {
   return program.method == Method::exact && program.real == RealType::f32 ? 0x1p-9f : 0x1p-20f;
 }
 
-std::vector<std::uint32_t> programSpirv(const Program& program, const CastOptions& options) {
+gpu::CompiledModule programModule(const Program& program, const CastOptions& options) {
   if (options.shaderFolder.empty()) {
     auto words = gpu::carriedModule(program.moduleName());
-    return {words.begin(), words.end()};
+    return {{words.begin(), words.end()}, {}};
   }
   std::filesystem::path folder = options.shaderFolder;
-  return gpu::compile(folder / (program.job == Job::pixels ? "pixels.comp" : "rays.comp"), program.defines(), {folder})
-      .spirv;
+  return gpu::compile(folder / (program.job == Job::pixels ? "pixels.comp" : "rays.comp"), program.defines(), {folder});
 }
 
 std::vector<std::string> leftOutLines(const Program& program, const World& world, const Channels& channels) {

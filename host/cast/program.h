@@ -62,8 +62,8 @@ RealType chooseReal(const gpu::DeviceInfo& device, const CastOptions& options, J
 /// forms made on the way, what s needs to 2^-27 (fp64) or decisions alone (fp32).
 float doubtOf(const Program& program);
 
-/// SPIR-V of the program: carried in the binary, or compiled now from options.shaderFolder.
-std::vector<std::uint32_t> programSpirv(const Program& program, const CastOptions& options);
+/// The program: carried in the binary (no files), or compiled now from options.shaderFolder.
+gpu::CompiledModule programModule(const Program& program, const CastOptions& options);
 
 /// Kinds of solids, buffers and outputs that this scene does without, for --stats.
 std::vector<std::string> leftOutLines(const Program& program, const World& world, const Channels& channels);

@@ -85,7 +85,7 @@ struct QueryCaster::Impl {
     // s to 2^-25.5 in fp64; in fp32 decisions that 2^-24 can tell, since t comes from the second pass.
     wanted[doubt] = bits(std::ldexp(1.f, program.real == RealType::f64 ? -23 : -9));
     if (!same || wanted != constants) {
-      std::vector<std::uint32_t> spirv = programSpirv(program, options);
+      std::vector<std::uint32_t> spirv = programModule(program, options).spirv;
       pipeline.emplace(device.makePipeline(spirv, wanted));
       stats.spirvBytes = spirv.size() * 4;
       stats.specialisedSpirvBytes = pipeline->spirvBytes();

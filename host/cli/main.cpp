@@ -106,6 +106,7 @@ int run(int argc, char** argv) {
   addGenerate(app);
   addStudy(app);
   addBench(app);
+  addWatch(app);
   try {
     checkVerb(app, argc, argv);
     std::vector<std::string> words = withPlanNames({argv + 1, argv + argc});

@@ -3,10 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 
+#include "host/cli/interrupt.h"
 #include "host/cli/options.h"
 #include "host/cli/progress.h"
 #include "host/cli/verbs.h"
@@ -35,26 +35,6 @@ struct Options {
   std::uint64_t seed = 1;
   int runs = 25;
   CastingOptions casting;
-};
-
-volatile std::sig_atomic_t interrupted = 0;  // the signal's number
-struct sigaction beforeStudy[NSIG];
-
-/// The first Ctrl-C (or kill) is a wish to end; the second does what it did before the study.
-class UntilInterrupt {
- public:
-  UntilInterrupt() {
-    struct sigaction action {};
-    action.sa_handler = [](int number) {
-      interrupted = number;
-      sigaction(number, &beforeStudy[number], nullptr);
-    };
-    for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, &beforeStudy[number]);
-  }
-  ~UntilInterrupt() {
-    for (const int number : {SIGINT, SIGTERM}) sigaction(number, &beforeStudy[number], nullptr);
-  }
-  UntilInterrupt(const UntilInterrupt&) = delete;
 };
 
 void write(const std::filesystem::path& path, const std::string& text) {
@@ -111,8 +91,9 @@ void run(const Options& options) {
   if (!std::filesystem::is_directory(folder))
     throw Error(Exit::output, options.folder + ": cannot be made a folder" + (failed ? ": " + failed.message() : ""));
   const std::unique_ptr<gpu::Device> device = openDevice(options.casting);
+  int interrupted = 0;
   {
-    const UntilInterrupt guard;
+    const UntilInterrupt interrupt;
     Progress bar;
     auto written = std::chrono::steady_clock::time_point{};
     run(*device, study, [&](const study::Study& now, double fraction, const std::string& next) {
@@ -121,9 +102,10 @@ void run(const Options& options) {
         writeAll(now, folder);
         written = std::chrono::steady_clock::now();
       }
-      return interrupted == 0;
+      return interrupt.number() == 0;
     });
     writeAll(study, folder);
+    interrupted = interrupt.number();
   }
   note((study.complete ? "wrote " : "interrupted; what was measured is in ") + (folder / "study.html").string());
   if (!study.complete) throw CLI::RuntimeError(128 + interrupted);

@@ -15,5 +15,6 @@ void addDevices(CLI::App& app);
 void addGenerate(CLI::App& app);
 void addStudy(CLI::App& app);
 void addBench(CLI::App& app);
+void addWatch(CLI::App& app);
 
 }  // namespace solidcast::cli

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 std::string readFile(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in || fs::is_directory(file)) {
-    throw Error(Exit::shader, file.string() + ": error: the shader file cannot be read");
+    throw CompileError(file.string() + ": error: the shader file cannot be read", {file});
   }
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -31,6 +31,9 @@ std::string readFile(const fs::path& file) {
 class Includer : public glslang::TShader::Includer {
  public:
   Includer(const std::vector<fs::path>& folders, std::vector<fs::path>& files) : folders_(folders), files_(files) {}
+
+  /// Places where nothing was found: a file that appears there changes what is included.
+  const std::vector<fs::path>& missing() const { return missing_; }
 
   IncludeResult* includeLocal(const char* header, const char* includer, size_t depth) override {
     const fs::path beside = fs::path(includer).parent_path();
@@ -58,7 +61,10 @@ class Includer : public glslang::TShader::Includer {
 
   IncludeResult* found(const fs::path& place) {
     const fs::path file = place.lexically_normal();
-    if (!fs::is_regular_file(file)) return nullptr;
+    if (!fs::is_regular_file(file)) {
+      missing_.push_back(file);
+      return nullptr;
+    }
     if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
     return made(file.string(), readFile(file));
   }
@@ -74,6 +80,7 @@ class Includer : public glslang::TShader::Includer {
 
   const std::vector<fs::path>& folders_;
   std::vector<fs::path>& files_;
+  std::vector<fs::path> missing_;
   std::string looked_;  // for the message
 };
 
@@ -138,11 +145,13 @@ CompiledModule compileText(const std::string& text, const std::string& name, con
   constexpr auto rules = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors);
   constexpr int versionIfNoneGiven = 460;
   if (!shader.parse(GetDefaultResources(), versionIfNoneGiven, false, rules, includer)) {
-    throw Error(Exit::shader, reshaped(shader.getInfoLog(), name));
+    std::vector<fs::path> files = module.files;
+    files.insert(files.end(), includer.missing().begin(), includer.missing().end());
+    throw CompileError(reshaped(shader.getInfoLog(), name), std::move(files));
   }
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(rules)) throw Error(Exit::shader, reshaped(program.getInfoLog(), name));
+  if (!program.link(rules)) throw CompileError(reshaped(program.getInfoLog(), name), module.files);
 
   glslang::SpvOptions options;
   options.disableOptimizer = true;
@@ -151,9 +160,16 @@ CompiledModule compileText(const std::string& text, const std::string& name, con
 }
 
 CompiledModule compile(const fs::path& file, const Defines& defines, const std::vector<fs::path>& folders) {
-  CompiledModule module = compileText(readFile(file), file.string(), defines, folders);
-  module.files.insert(module.files.begin(), file);
-  return module;
+  const std::string text = readFile(file);
+  try {
+    CompiledModule module = compileText(text, file.string(), defines, folders);
+    module.files.insert(module.files.begin(), file);
+    return module;
+  } catch (const CompileError& error) {
+    std::vector<fs::path> files = error.files();
+    files.insert(files.begin(), file);
+    throw CompileError(error.what(), std::move(files));
+  }
 }
 
 }  // namespace solidcast::gpu

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "../error.h"
+
 namespace solidcast::gpu {
 
 using Defines = std::vector<std::pair<std::string, std::string>>;
@@ -19,8 +21,19 @@ struct CompiledModule {
   std::vector<std::filesystem::path> files;  // the file itself and everything it included
 };
 
+/// What does not compile, with the files that were read or looked for until then: one of them must change first.
+class CompileError : public Error {
+ public:
+  CompileError(const std::string& line, std::vector<std::filesystem::path> files)
+      : Error(Exit::shader, line), files_(std::move(files)) {}
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+
+ private:
+  std::vector<std::filesystem::path> files_;
+};
+
 /// Compiles `file` (a .comp) in process; `#include "x"` is looked up beside the including file, then in `folders`.
-/// Throws Exit::shader with one line `path:line: error: message` (first error first, further ones on lines of their own).
+/// Throws CompileError with one line `path:line: error: message` (first error first, further ones on lines of their own).
 CompiledModule compile(const std::filesystem::path& file, const Defines& defines,
                        const std::vector<std::filesystem::path>& folders = {});
 

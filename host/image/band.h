@@ -16,10 +16,12 @@ struct Channels {
   bool normal = false;    // unit geometric normal; 0 for a miss
   bool local = false;     // local coordinates; 0 for a miss
   bool position = false;  // hit point in the world; 0 for a miss
+  bool operator==(const Channels&) const = default;
 };
 
 struct Crop {
   int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Crop&) const = default;
 };  // width 0: the whole image
 
 struct RenderJob {
@@ -29,6 +31,7 @@ struct RenderJob {
                               // all other channels are of the pixel's centre
   bool twoSided = false;
   Channels channels;
+  bool operator==(const RenderJob&) const = default;
 };
 
 /// `rows` rows of the crop, `width` pixels each. A vector is empty unless its channel was asked for.

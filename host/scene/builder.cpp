@@ -145,9 +145,10 @@ void SceneBuilder::finishMesh(const Fields& fields) {
   const std::string name = readName(fields);
   names_.add(name, numbered("group ", world.groups.size()), fields.where("name"));
   const std::size_t before = warnings_.size();
+  const std::string file = std::filesystem::path(scene_.file).parent_path() / mesh.file;
+  if (files_ != nullptr) files_->push_back(file);
   try {
-    addMesh(world, list.group, name, std::filesystem::path(scene_.file).parent_path() / mesh.file, mesh.placement,
-            warnings_);
+    addMesh(world, list.group, name, file, mesh.placement, warnings_);
   } catch (const Fault& fault) { throw Fault{fields.where("file"), fault.text}; }
   for (std::size_t i = before; i < warnings_.size(); ++i) warnings_[i].where = fields.where("file");
   ++list.index;

@@ -24,7 +24,9 @@ class UniqueNames {
 /// false) and is then found in `syntaxErrorAt` and `syntaxError`.
 class SceneBuilder : public nlohmann::json_sax<Json> {
  public:
-  SceneBuilder(Scene& scene, std::vector<Fault>& warnings) : scene_(scene), warnings_(warnings) {}
+  /// `files`, where not null, gets the further files that the scene names.
+  SceneBuilder(Scene& scene, std::vector<Fault>& warnings, std::vector<std::string>* files)
+      : scene_(scene), warnings_(warnings), files_(files) {}
 
   std::size_t syntaxErrorAt = 0;  // bytes read when it was found
   std::string syntaxError, syntaxErrorToken;
@@ -63,6 +65,7 @@ class SceneBuilder : public nlohmann::json_sax<Json> {
 
   Scene& scene_;
   std::vector<Fault>& warnings_;
+  std::vector<std::string>* files_;
   std::vector<Level> levels_;
   UniqueNames names_;
   int groupDepth_ = 0;

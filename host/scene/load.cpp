@@ -108,11 +108,12 @@ Scene meshScene(const std::string& file, std::vector<std::string>& warnings) {
 
 }  // namespace
 
-Scene parseScene(const std::string& text, const std::string& file, std::vector<std::string>& warnings) {
+Scene parseScene(const std::string& text, const std::string& file, std::vector<std::string>& warnings,
+                 std::vector<std::string>* files) {
   Scene scene;
   scene.file = file;
   std::vector<Fault> found;
-  SceneBuilder builder(scene, found);
+  SceneBuilder builder(scene, found, files);
   try {
     if (!Json::sax_parse(text, &builder, Json::input_format_t::json, true, true)) refuseSyntax(builder, text, file);
   } catch (const Fault& fault) { refuse(file + ": " + place(fault.where) + ": " + fault.text); }
@@ -123,15 +124,16 @@ Scene parseScene(const std::string& text, const std::string& file, std::vector<s
   return scene;
 }
 
-Scene loadScene(const std::string& file, std::vector<std::string>& warnings) {
+Scene loadScene(const std::string& file, std::vector<std::string>& warnings, std::vector<std::string>* files) {
   if (file == "-") return parseScene(readAll(std::cin, "standard input"), "standard input", warnings);
+  if (files != nullptr) files->push_back(file);
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) refuse(file + ": is a folder, expected a scene file");
   if (isMeshFile(file)) return meshScene(file, warnings);
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   if (!in) refuse(file + ": " + (errno == ENOENT ? "no such file" : std::strerror(errno)) + ", expected a scene file");
-  return parseScene(readAll(in, file), file, warnings);
+  return parseScene(readAll(in, file), file, warnings, files);
 }
 
 }  // namespace solidcast

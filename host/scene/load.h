@@ -11,10 +11,12 @@ namespace solidcast {
 
 /// Reads and checks a scene file, or makes a scene of a mesh file (.ply, .obj); "-" is standard input. Throws Error(Exit::usage) with one line
 /// `file:line:column: ...` or `file: /json/path: what is wrong, expected what`. Warnings (slivers) go to `warnings`.
-Scene loadScene(const std::string& file, std::vector<std::string>& warnings);
+/// `files`, where given, gets all files that were read or should have been, also when it throws.
+Scene loadScene(const std::string& file, std::vector<std::string>& warnings, std::vector<std::string>* files = nullptr);
 
 /// The same from text; `file` is used in messages.
-Scene parseScene(const std::string& text, const std::string& file, std::vector<std::string>& warnings);
+Scene parseScene(const std::string& text, const std::string& file, std::vector<std::string>& warnings,
+                 std::vector<std::string>* files = nullptr);
 
 /// The rules that a scene made through the API must keep too (positive radius, finite numbers, ...).
 void checkScene(const Scene& scene, std::vector<std::string>& warnings);

@@ -49,7 +49,7 @@ std::string specialisedText(const MarkedShaders& shaders, const Program& program
   if (!program.eye() || program.hits) records = worldRecords(world, {}, program.real);
   gpu::Specialisation constants = recordConstants(program, program.eye() ? forms : records, records);
   if (program.job == Job::pixels) constants[wanted] = program.hits ? 1 + 16 : 1, constants[viewRaws] = 6;
-  const auto module = gpu::specialised(programSpirv(program, options), {constants.begin(), constants.end()});
+  const auto module = gpu::specialised(programModule(program, options).spirv, {constants.begin(), constants.end()});
   EXPECT_EQ(gpu::validationError(module), "");
   return gpu::disassemble(module);
 }
