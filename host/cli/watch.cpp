@@ -8,6 +8,7 @@
 #include "host/cli/options.h"
 #include "host/cli/verbs.h"
 #include "host/error.h"
+#include "host/image/writer.h"
 #include "host/watch/files.h"
 #include "host/watch/session.h"
 
@@ -59,6 +60,7 @@ void checkStart(const Watch& options) {
     throw Error(Exit::usage, "watch: standard input is no file that can be saved, expected a scene file");
   if (options.output == "-")
     throw Error(Exit::usage, "-o: standard output holds one image, expected a file that each image replaces");
+  imageFormat(options.output);
   std::error_code ignored;
   if (!std::filesystem::exists(options.scene, ignored))
     throw Error(Exit::usage, options.scene + ": no such file, expected a scene file");

@@ -44,7 +44,11 @@ class Files : public ::testing::Test {
     });
     return watcher.wait(std::span<const int>(&stop_[0], 1));
   }
-  void expectQuiet() { EXPECT_EQ(changes(std::chrono::milliseconds(60)), Paths{}); }
+  void expectQuiet() {
+    EXPECT_EQ(changes(std::chrono::milliseconds(60)), Paths{});
+    char bell;
+    EXPECT_EQ(::read(stop_[0], &bell, 1), 1);
+  }
 
   Folder folder;
   const std::string a = folder / "a.json", b = folder / "b.glsl";
