@@ -31,12 +31,11 @@ void setAxis(Bounds& b, std::size_t i, double lo, double hi, double reach) {
 template <class Solid>
 std::optional<Bounds> boundsOfSolid(const Solid& solid) {
   Bounds b;
-  const Outline corners = outline(solid);
-  if (corners.count > 0) {
+  const auto corners = outline(solid, Triple{0, 0, 0});
+  if constexpr (std::tuple_size_v<decltype(outline(solid, Triple{}))> > 0) {
     for (std::size_t i = 0; i < 3; ++i) {
-      double lo = corners.points[0][i], hi = lo;
-      for (std::size_t p = 1; p < static_cast<std::size_t>(corners.count); ++p)
-        lo = std::min(lo, corners.points[p][i]), hi = std::max(hi, corners.points[p][i]);
+      double lo = corners[0][i], hi = lo;
+      for (const Triple& p : corners) lo = std::min(lo, p[i]), hi = std::max(hi, p[i]);
       setAxis(b, i, lo, hi, std::max(std::abs(lo), std::abs(hi)));
     }
     return checked(b);
@@ -55,14 +54,14 @@ std::optional<Bounds> boundsOfSolid(const Disc& disc) {
   const V3 n = normalized(V3(disc.normal));
   for (int i = 0; i < 3; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const double reach = disc.radius * static_cast<double>(sqrtq(larger(0, 1 - n[i] * n[i])));
+    const double reach = disc.radius * static_cast<double>(sqrtq(larger(f128(0), 1 - n[i] * n[i])));
     setAxis(b, at, disc.center[at] - reach, disc.center[at] + reach, std::abs(disc.center[at]) + disc.radius);
   }
   return checked(b);
 }
 
 std::optional<Bounds> boundsOfSolid(const Quadric& quadric) {
-  const QuadricForm q = quadricForm(quadric);
+  const QuadricForm<f128> q = quadricForm(quadric);
   const f128 sign = q.M.xx < 0 ? -1 : 1, part = ldexpq(1, -40), wide = ldexpq(1, -60);
   const f128 M[3][3] = {{sign * q.M.xx, sign * q.M.xy, sign * q.M.xz},
                         {sign * q.M.xy, sign * q.M.yy, sign * q.M.yz},
@@ -92,7 +91,7 @@ std::optional<Bounds> boundsOfSolid(const Quadric& quadric) {
     level -= l[i] * center[i];
     levelSize += fabsq(l[i]) * uncertain[i];
   }
-  level = larger(0, level) + wide * levelSize;  // below 0 there is no surface: a box costs less than a case of its own
+  level = larger(f128(0), level) + wide * levelSize;  // below 0 there is no surface: a box costs less than a case of its own
   Bounds b;
   for (int i = 0; i < 3; ++i) {
     const f128 half = sqrtq(level * cofactor[i][i] / determinant), slack = wide * (uncertain[i] + half);

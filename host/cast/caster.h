@@ -20,9 +20,10 @@ enum class Arithmetic { automatic, fp64, df32 };  // of `exact`
 /// automatic: what is expected to be cheapest; a small scene's records become constants of the pipeline once dispatches
 /// have taken as long as that compilation, so that it never costs more than twice the best choice.
 /// baked: the records are constants of the pipeline. uniform, storage: they are in a buffer of that kind.
-/// tiles: in a storage buffer, a list for each tile of the screen.
+/// tiles: in a storage buffer, a dispatch for each tile of the screen with the solids that can be seen in it.
+/// lists: small tiles, each walked by one lane with a list of its own (list_build.h).
 /// index: in a storage buffer, with a tree of boxes (free rays).
-enum class Plan { automatic, baked, uniform, storage, tiles, index };
+enum class Plan { automatic, baked, uniform, storage, tiles, lists, index };
 
 struct CastOptions {
   Method method = Method::exact;

@@ -182,7 +182,6 @@ void GroupSearch::prepareTiles(const Band& band) {
 }
 
 double GroupSearch::dispatch(const PassTarget& target, const Band& band, int sample) {
-  prepareTiles(band);
   if (bakingCosts_ && !bakeAtOnce_ && spent_ > *bakingCosts_) bake();
   if (program_.storage) {
     const std::size_t kept = portions_.size() > 1 ? std::size_t{u(target.stride)} * u(target.rows) * stateBytes : 64;

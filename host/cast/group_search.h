@@ -16,6 +16,7 @@ class GroupSearch : public PixelSearch {
   const Program& program() const override { return program_; }
   void setScene(const Scene& scene) override;
   std::size_t bytesPerPixel() const override { return portions_.size() > 1 ? stateBytes : 0; }
+  void prepare(const PassTarget&, const Band& band) override { prepareTiles(band); }
   double dispatch(const PassTarget& target, const Band& band, int sample) override;
   void settle() override;
 

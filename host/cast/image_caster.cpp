@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "host/cast/group_search.h"
+#include "host/cast/list_search.h"
 #include "host/cast/pass.h"
 #include "host/error.h"
 
@@ -13,6 +14,7 @@ std::unique_ptr<PixelSearch> makeSearch(const PassJob& job, const Scene& scene) 
   const PlanChoice choice = choosePlan(facts, job.options.plan);
   job.stats.planName = planName(choice.plan);
   for (std::string& line : planLines(facts, choice, job.options.plan)) job.stats.plan.push_back(std::move(line));
+  if (choice.plan == Plan::lists) return std::make_unique<ListSearch>(job, scene);
   return std::make_unique<GroupSearch>(job, scene, choice);
 }
 

@@ -69,9 +69,10 @@ void Pass::dispatch(const Band& band) {
   if (doubtful_.size() < count) doubtful_.resize(count);
   for (std::size_t sample = 0; sample < count; ++sample) {
     if (exact_) doubts_.as<std::uint32_t>()[0] = 0;
+    const PassTarget target{image_, exact_ ? &doubts_ : nullptr, stride_, padded(band.rows, groupRows)};
+    search_->prepare(target, band);
     Stopwatch watch;
-    double ms = search_->dispatch({image_, exact_ ? &doubts_ : nullptr, stride_, padded(band.rows, groupRows)}, band,
-                                  static_cast<int>(sample));
+    double ms = search_->dispatch(target, band, static_cast<int>(sample));
     if (!warm_) stats_.first_dispatch_ms += watch.ms();
     warm_ = true;
     stats_.dispatch_ms += ms;

@@ -46,6 +46,8 @@ class PixelSearch {
   /// Another scene of the same kind of camera: records anew; the pipeline only if its constants differ. `scene` must
   /// outlive the search or the next call.
   virtual void setScene(const Scene& scene) = 0;
+  /// What the band needs beside the pipeline, where that was not made for it already.
+  virtual void prepare(const PassTarget&, const Band&) {}
   /// Bytes of device memory a pixel takes, beside the image.
   virtual std::size_t bytesPerPixel() const { return 0; }
   /// One sample of every pixel of the band; GPU time in ms.

@@ -14,7 +14,8 @@ struct Name {
   const char* text;
 };
 constexpr Name names[] = {{Plan::automatic, "auto"},  {Plan::baked, "baked"}, {Plan::uniform, "uniform"},
-                          {Plan::storage, "storage"}, {Plan::tiles, "tiles"}, {Plan::index, "index"}};
+                          {Plan::storage, "storage"}, {Plan::tiles, "tiles"}, {Plan::lists, "lists"},
+                          {Plan::index, "index"}};
 
 constexpr std::uint32_t mostBaked = 64;  // solids; compiling more takes seconds
 /// Wall ns that one ray and one solid take from a uniform buffer on two threads of the machine of performance-notes.md.
@@ -116,6 +117,15 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
       cost.prepare_ms = flatten + pipelineMs + indexUs * 1e-3 * n;
       cost.rays_ms = rays * indexNs(f) * 1e-6;
       if (f.program.job == Job::pixels) cost.impossible = "an index is for free rays (query)";
+      break;
+    }
+    case Plan::lists: {
+      const bool fast = f.program.method == Method::fast;
+      cost.prepare_ms = f.pictures * (0.2 + n * (fast ? 2e-5 : 2e-4)) + pipelineMs;
+      cost.rays_ms = rays * (fast ? 4e-6 : 8e-6) + f.count[0] * rays * perSolid;
+      if (!f.program.eye()) cost.impossible = "rays without a common origin have no lists";
+      else if (f.program.hits) cost.impossible = "normals come from world records, of which lists have none";
+      else if (f.program.real == RealType::df32) cost.impossible = "double-float takes seconds to compile";
       break;
     }
     case Plan::automatic:

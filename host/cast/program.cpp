@@ -20,9 +20,9 @@ const char* methodLabel(const Program& p) {
 
 std::string Program::moduleName() const {
   static const char* cameras[] = {"perspective", "environment", "orthographic"};
-  std::string name = job == Job::pixels ? "pixels_" : "rays_";
+  std::string name = job == Job::pixels ? "pixels_" : job == Job::rays ? "rays_" : "lists_";
   name += methodLabel(*this);
-  if (job == Job::pixels) name += std::string("_") + cameras[camera];
+  if (job != Job::rays) name += std::string("_") + cameras[camera];
   if (storage) name += index ? "_index" : "_storage";
   if (job == Job::pixels && hits) name += "_hits";
   return name;
@@ -30,13 +30,10 @@ std::string Program::moduleName() const {
 
 gpu::Defines Program::defines() const {
   gpu::Defines d = {{"METHOD", std::to_string(static_cast<int>(method))},
-                    {"ARITHMETIC", std::to_string(static_cast<int>(real))},
-                    {"STORAGE", storage ? "1" : "0"},
-                    {"INDEX", index ? "1" : "0"}};
-  if (job == Job::pixels) {
-    d.emplace_back("CAMERA", std::to_string(camera));
-    d.emplace_back("HITS", hits ? "1" : "0");
-  }
+                    {"ARITHMETIC", std::to_string(static_cast<int>(real))}};
+  if (job != Job::lists) d.emplace_back("STORAGE", storage ? "1" : "0"), d.emplace_back("INDEX", index ? "1" : "0");
+  if (job != Job::rays) d.emplace_back("CAMERA", std::to_string(camera));
+  if (job == Job::pixels) d.emplace_back("HITS", hits ? "1" : "0");
   return d;
 }
 
@@ -99,7 +96,11 @@ gpu::CompiledModule programModule(const Program& program, const CastOptions& opt
     return {{words.begin(), words.end()}, {}};
   }
   std::filesystem::path folder = options.shaderFolder;
-  return gpu::compile(folder / (program.job == Job::pixels ? "pixels.comp" : "rays.comp"), program.defines(), {folder});
+  return gpu::compile(folder / (program.job == Job::pixels ? "pixels.comp"
+                                : program.job == Job::rays ? "rays.comp"
+                                                           : "lists.comp"),
+                      program.defines(), {folder})
+      .spirv;
 }
 
 std::vector<std::string> leftOutLines(const Program& program, const World& world, const Channels& channels) {
@@ -109,7 +110,7 @@ std::vector<std::string> leftOutLines(const Program& program, const World& world
   for (int kind = 0; kind < kindCount; ++kind)
     if (!there[static_cast<std::size_t>(kind)])
       lines.push_back(std::string(kindLabel(kind)) + ": no code, no records (the scene has none)");
-  if (program.job == Job::pixels) {
+  if (program.job != Job::rays) {
     if (!channels.normal && !channels.local && !channels.position)
       lines.push_back("normals, local coordinates, hit points: no code, no buffers (not asked for)");
     if (!channels.radiance && !channels.rgb8) lines.push_back("integrators: no code (no radiance asked for)");
@@ -119,7 +120,8 @@ std::vector<std::string> leftOutLines(const Program& program, const World& world
   }
   if (program.eye()) lines.push_back("world records: none (the forms for this eye are all it needs)");
   if (program.method != Method::exact) lines.push_back("second pass: none (only exact has one)");
-  if (!program.storage) lines.push_back("search in portions: none (all records fit a uniform buffer)");
+  if (!program.storage && program.job != Job::lists)
+    lines.push_back("search in portions: none (all records fit a uniform buffer)");
   return lines;
 }
 

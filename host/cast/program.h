@@ -11,9 +11,9 @@
 
 namespace solidcast {
 
-enum class Job { pixels, rays };
+enum class Job { pixels, rays, lists };
 
-/// A variant of shaders/pixels.comp or rays.comp.
+/// A variant of shaders/pixels.comp, rays.comp or lists.comp.
 struct Program {
   Job job = Job::pixels;
   Method method = Method::exact;
@@ -22,7 +22,7 @@ struct Program {
   bool storage = false;  // records in storage buffers, searched in portions
   bool index = false;    // searched by an index (index.h); storage too
   bool hits = false;     // normals, local coordinates and points from the shader
-  bool eye() const { return job == Job::pixels && method != Method::naive && camera != 2; }
+  bool eye() const { return job != Job::rays && method != Method::naive && camera != 2; }
 
   std::string moduleName() const;  // "pixels_exact64_perspective"
   gpu::Defines defines() const;
@@ -47,7 +47,8 @@ enum Constant : std::uint32_t {
   someGraze,
   rays,
   someTie,
-  held
+  held,
+  portioned
 };
 std::uint32_t bits(float value);
 

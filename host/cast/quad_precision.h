@@ -1,6 +1,9 @@
-// Small vectors of binary128 numbers: what the flattening and the second pass calculate in.
+// Small vectors of binary128 numbers, what the second pass calculates in; the flattening also in narrower ones.
 #pragma once
 #include <quadmath.h>
+
+#include <cmath>
+#include <type_traits>
 
 #include "host/scene/world.h"
 
@@ -8,29 +11,50 @@ namespace solidcast {
 
 using f128 = __float128;
 
-struct V3 {
-  f128 x = 0, y = 0, z = 0;
-  V3() = default;
-  V3(f128 a, f128 b, f128 c) : x(a), y(b), z(c) {}
-  explicit V3(const Triple& t) : x(t[0]), y(t[1]), z(t[2]) {}
-  f128 operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
-  f128& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
+// What the flattening alone needs is written for any number type T: double, long double or f128.
+inline f128 squareRoot(f128 x) { return sqrtq(x); }
+inline f128 magnitude(f128 x) { return fabsq(x); }
+inline f128 shifted(f128 x, int exponent) { return ldexpq(x, exponent); }  // x 2^exponent
+inline long double squareRoot(long double x) { return std::sqrt(x); }
+inline long double magnitude(long double x) { return std::fabs(x); }
+inline long double shifted(long double x, int exponent) { return std::ldexp(x, exponent); }
+inline double squareRoot(double x) { return std::sqrt(x); }
+inline double magnitude(double x) { return std::fabs(x); }
+inline double shifted(double x, int exponent) { return std::ldexp(x, exponent); }
+
+template <class T>
+struct Vec3 {
+  T x = 0, y = 0, z = 0;
+  Vec3() = default;
+  Vec3(T a, T b, T c) : x(a), y(b), z(c) {}
+  explicit Vec3(const Triple& t) : x(t[0]), y(t[1]), z(t[2]) {}
+  template <class U>
+  explicit Vec3(const Vec3<U>& v) : x(static_cast<T>(v.x)), y(static_cast<T>(v.y)), z(static_cast<T>(v.z)) {}
+  T operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
+  T& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
+
+  friend Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
+  friend Vec3 operator*(Vec3 a, T k) { return {a.x * k, a.y * k, a.z * k}; }
+  friend Vec3 operator*(T k, Vec3 a) { return a * k; }
+  friend Vec3 operator/(Vec3 a, T k) { return {a.x / k, a.y / k, a.z / k}; }
+  friend T dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  friend Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+  friend T length(Vec3 a) { return squareRoot(dot(a, a)); }
+  friend Vec3 normalized(Vec3 a) { return a / length(a); }
+  friend bool isZero(Vec3 a) { return a.x == 0 && a.y == 0 && a.z == 0; }
 };
+using V3 = Vec3<f128>;
 
-inline V3 operator+(V3 a, V3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline V3 operator-(V3 a, V3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline V3 operator-(V3 a) { return {-a.x, -a.y, -a.z}; }
-inline V3 operator*(V3 a, f128 k) { return {a.x * k, a.y * k, a.z * k}; }
-inline V3 operator*(f128 k, V3 a) { return a * k; }
-inline V3 operator/(V3 a, f128 k) { return {a.x / k, a.y / k, a.z / k}; }
-inline f128 dot(V3 a, V3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline V3 cross(V3 a, V3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-inline f128 length(V3 a) { return sqrtq(dot(a, a)); }
-inline V3 normalized(V3 a) { return a / length(a); }
-inline bool isZero(V3 a) { return a.x == 0 && a.y == 0 && a.z == 0; }
-
-inline f128 smaller(f128 a, f128 b) { return a < b ? a : b; }
-inline f128 larger(f128 a, f128 b) { return a > b ? a : b; }
+template <class T>
+T smaller(T a, std::type_identity_t<T> b) {
+  return a < b ? a : b;
+}
+template <class T>
+T larger(T a, std::type_identity_t<T> b) {
+  return a > b ? a : b;
+}
 
 /// The power of two nearest below |x| (1 for 0).
 inline f128 powerOfTwo(f128 x) {
@@ -39,12 +63,14 @@ inline f128 powerOfTwo(f128 x) {
   frexpq(x, &e);
   return ldexpq(1, e - 1);
 }
+inline long double powerOfTwo(long double x) { return x == 0 ? 1 : std::ldexp(1.0L, std::ilogb(x)); }
+inline double powerOfTwo(double x) { return x == 0 ? 1 : std::ldexp(1.0, std::ilogb(x)); }
 
 /// A vector orthogonal to the unit vector n and of unit length.
-inline V3 orthogonal(V3 n) {
-  V3 axis = fabsq(n.x) <= fabsq(n.y) && fabsq(n.x) <= fabsq(n.z) ? V3{1, 0, 0}
-            : fabsq(n.y) <= fabsq(n.z)                           ? V3{0, 1, 0}
-                                                                 : V3{0, 0, 1};
+template <class T>
+Vec3<T> orthogonal(Vec3<T> n) {
+  T x = magnitude(n.x), y = magnitude(n.y), z = magnitude(n.z);
+  Vec3<T> axis = x <= y && x <= z ? Vec3<T>{1, 0, 0} : y <= z ? Vec3<T>{0, 1, 0} : Vec3<T>{0, 0, 1};
   return normalized(cross(n, axis));
 }
 

@@ -15,7 +15,7 @@ struct KindRow {
   const char* label;
   std::uint32_t eyeRows, worldRows;
 };
-constexpr KindRow kinds[kindCount] = {
+constexpr KindRow kindTable[kindCount] = {
 #define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) {#kind, EYE_ROWS, WORLD_ROWS},
 #include "shaders/solids.def"
 #undef SOLID
@@ -36,7 +36,7 @@ Records joined(const std::vector<RowWriter>& rows, bool eye) {
   std::size_t row = 0;
   for (int kind = 0; kind < kindCount; ++kind) {
     const RowWriter& w = rows[static_cast<std::size_t>(kind)];
-    std::uint32_t per = eye ? kinds[kind].eyeRows : kinds[kind].worldRows;
+    std::uint32_t per = eye ? kindTable[kind].eyeRows : kindTable[kind].worldRows;
     auto k = static_cast<std::size_t>(kind);
     records.rowsPer[k] = per;
     records.firstRow[k] = static_cast<std::uint32_t>(row);
@@ -74,7 +74,7 @@ std::pair<f128, f128> pixelSteps(const Camera& camera, std::int64_t columns, std
       camera);
 }
 
-const char* kindLabel(int kind) { return kinds[kind].label; }
+const char* kindLabel(int kind) { return kindTable[kind].label; }
 int kindNumber(const Shape& shape) {
   return std::visit([](const auto& s) { return numberOf<std::decay_t<decltype(s)>>(); }, shape);
 }
@@ -87,26 +87,24 @@ std::uint32_t Records::solids() const {
 
 Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
   std::vector<RowWriter> rows = writers(type);
-  bool grazing = false;
-  EyeWriters out{rows.data(), &grazing};
-  bool onFace = false;
+  Records flags;
   std::vector<std::array<std::uint32_t, 2>> places;
   for (std::size_t i = 0; i < world.solids.size(); ++i) {
     const Shape& shape = world.solids[i].shape;
-    std::array<std::size_t, kindCount> before{};
-    for (std::size_t k = 0; k < kindCount; ++k) before[k] = rows[k].rows();
-    std::visit([&](const auto& s) { packEye(s, eye, static_cast<double>(i), out); }, shape);
-    std::uint32_t kind = 0;
-    while (kind < kindCount && rows[kind].rows() == before[kind]) ++kind;
-    places.push_back({kind, kind < kindCount ? static_cast<std::uint32_t>(before[kind]) : 0});
-    if (const auto* box = std::get_if<AABox>(&shape)) onFace = onFace || eyeOnFacePlane(*box, eye);
+    EyeRecord<f128> record(type);
+    std::visit([&](const auto& s) { packEye(s, eye, f128(i), record); }, shape);
+    auto kind = static_cast<std::uint32_t>(record.kind < 0 ? kindCount : record.kind);
+    places.push_back({kind, kind < kindCount ? static_cast<std::uint32_t>(rows[kind].rows()) : 0});
+    for (int r = 0; r < record.rows; ++r) rows[kind].add(record.row[r]);
+    flags.grazing = flags.grazing || record.grazing;
+    if (const auto* box = std::get_if<AABox>(&shape)) flags.boxOnFace = flags.boxOnFace || eyeOnFacePlane(*box, eye);
   }
   Records records = joined(rows, true);
   for (auto& place : places)
     if (place[0] < kindCount) place[1] += records.firstRow[place[0]];
   records.places = std::move(places);
-  records.boxOnFace = onFace;
-  records.grazing = grazing;
+  records.boxOnFace = flags.boxOnFace;
+  records.grazing = flags.grazing;
   if (type == RealType::f32) records.ties = mayTie(records, eye);
   return records;
 }
@@ -137,15 +135,19 @@ EyeFrame eyeFrame(const Scene& scene, RealType type) {
       },
       scene.camera);
   if (type == RealType::f64) return eye;
+  // The median distance of a few hundred solids from all over the scene: any unit near it serves.
   std::vector<double> scales;
-  for (const SolidEntry& solid : scene.world.solids) {
-    f128 scale = std::visit([&](const auto& s) { return length(V3(ball(s).center) - eye.origin); }, solid.shape);
-    if (scale > 0) scales.push_back(static_cast<double>(scale));
+  const Triple origin{double(eye.origin.x), double(eye.origin.y), double(eye.origin.z)};
+  const std::size_t solids = scene.world.solids.size(), step = solids / 512 + 1;
+  for (std::size_t i = 0; i < solids; i += step) {
+    const Shape& shape = scene.world.solids[i].shape;
+    const double scale = std::visit([&](const auto& s) { return distance(ball(s).center, origin); }, shape);
+    if (scale > 0) scales.push_back(scale);
   }
   if (scales.empty()) return eye;
   auto middle = scales.begin() + static_cast<std::ptrdiff_t>(scales.size() / 2);
   std::nth_element(scales.begin(), middle, scales.end());
-  eye.unit = powerOfTwo(*middle);
+  eye.unit = powerOfTwo(f128(*middle));
   return eye;
 }
 

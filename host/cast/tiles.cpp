@@ -6,147 +6,10 @@
 #include <thread>
 
 #include "host/cast/second_pass.h"
-#include "host/cast/solids/all.h"
+#include "host/cast/silhouette.h"
 
 namespace solidcast {
 namespace {
-
-enum class CameraKind { perspective, orthographic, environment };  // as in Camera
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-struct Interval {
-  double from = infinite, to = -infinite;
-  void add(double v) { from = std::min(from, v), to = std::max(to, v); }
-  bool empty() const { return from > to; }
-};
-
-/// Where a solid can be seen, in pixels of the whole image (x to the right, y down).
-struct Rectangle {
-  Interval x, y;
-  bool everywhere = false;
-};
-
-struct P3 {
-  double x, y, z;  // camera axes, z backward
-};
-
-/// Camera of a scene in fp64: what of the screen a point or ball can cover.
-class Projector {
- public:
-  Projector(const Scene& scene, int width, int height) : width_(width), height_(height) {
-    EyeFrame eye = eyeFrame(scene, RealType::f64);
-    for (int k = 0; k < 3; ++k) {
-      auto at = static_cast<std::size_t>(k);
-      origin_[at] = static_cast<double>(eye.origin[k]);
-      axes_[0][at] = static_cast<double>(eye.right[k]);
-      axes_[1][at] = static_cast<double>(eye.upward[k]);
-      axes_[2][at] = static_cast<double>(eye.backward[k]);
-    }
-    auto [stepX, stepY] = pixelSteps(scene.camera, width, height);
-    stepX_ = static_cast<double>(stepX), stepY_ = static_cast<double>(stepY);
-    kind_ = static_cast<CameraKind>(scene.camera.index());
-  }
-
-  template <class Solid>
-  Rectangle rectangle(const Solid& solid) const {
-    Rectangle r;
-    Outline corners = outline(solid);
-    if (corners.count > 0 && kind_ != CameraKind::environment) {
-      int behind = 0;
-      for (int i = 0; i < corners.count; ++i) {
-        P3 p = toCamera(corners.points[static_cast<std::size_t>(i)]);
-        if (kind_ == CameraKind::orthographic) {
-          r.x.add(p.x / stepX_), r.y.add(-p.y / stepY_);
-        } else if (p.z < 0) {
-          r.x.add(p.x / -p.z / stepX_), r.y.add(p.y / p.z / stepY_);
-        } else {
-          ++behind;
-        }
-      }
-      if (behind == corners.count) return {};  // in front of the eye there is nothing of it
-      r.everywhere = behind > 0;
-    } else {
-      Ball b = ball(solid);
-      if (b.radius < 0) {
-        r.everywhere = true;
-        return r;
-      }
-      r = ofBall(toCamera(b.center), b.radius);
-    }
-    return widened(r);
-  }
-
- private:
-  P3 toCamera(const Triple& p) const {
-    Triple f{p[0] - origin_[0], p[1] - origin_[1], p[2] - origin_[2]};
-    double v[3];
-    for (int i = 0; i < 3; ++i) v[i] = axes_[i][0] * f[0] + axes_[i][1] * f[1] + axes_[i][2] * f[2];
-    return {v[0], v[1], v[2]};
-  }
-
-  /// Slopes of the two tangents from the eye to a circle with centre (across, depth): the zeros of
-  /// (across - s depth)^2 = r^2 (1 + s^2).
-  static Interval tangents(double across, double depth, double r) {
-    double a = depth * depth - r * r, q = across * across + a;
-    double h = r * std::sqrt(std::max(q, 0.0)), middle = across * depth;
-    return {(middle - h) / a, (middle + h) / a};
-  }
-
-  Rectangle ofBall(P3 c, double radius) const {
-    Rectangle r;
-    double depth = -c.z, big = radius * (1 + 1e-9) + 1e-12 * (std::abs(c.x) + std::abs(c.y) + std::abs(c.z));
-    switch (kind_) {
-      case CameraKind::orthographic:
-        r.x = {(c.x - big) / stepX_, (c.x + big) / stepX_};
-        r.y = {(-c.y - big) / stepY_, (-c.y + big) / stepY_};
-        return r;
-      case CameraKind::environment: {
-        double distance = std::sqrt(c.x * c.x + c.y * c.y + c.z * c.z);
-        if (distance <= big * 1.001) break;
-        double size = std::asin(big / distance) + 1e-9;
-        double lat = std::asin(std::clamp(c.y / distance, -1.0, 1.0)), lon = std::atan2(c.x, depth);
-        r.y = {-(lat + size) / stepY_, -(lat - size) / stepY_};
-        double wide = std::sin(size) / std::cos(lat);  // the cap's half width in longitude, unless it holds a pole
-        if (std::abs(lat) + size >= M_PI / 2 || wide >= 1) {
-          r.x = {-infinite, infinite};
-        } else {
-          double half = std::asin(wide) + 1e-9;
-          r.x = {(lon - half) / stepX_, (lon + half) / stepX_};
-          // Over the seam behind the eye: both ends of the image.
-          if (lon - half < -M_PI || lon + half > M_PI) r.x = {-infinite, infinite};
-        }
-        return r;
-      }
-      case CameraKind::perspective:
-        if (depth <= -big) return r;       // behind
-        if (depth <= big * 1.0001) break;  // reaches the plane of the eye
-        Interval x = tangents(c.x, depth, big), y = tangents(-c.y, depth, big);
-        r.x = {x.from / stepX_, x.to / stepX_};
-        r.y = {y.from / stepY_, y.to / stepY_};
-        return r;
-    }
-    r.everywhere = true;
-    return r;
-  }
-
-  /// From the image's middle to its corner, and by more than fp64 can have lost: tiles cost nothing by comparison.
-  Rectangle widened(Rectangle r) const {
-    if (r.everywhere || r.x.empty()) return r;
-    auto widen = [](Interval& i, double middle) {
-      double slack = 1e-3 + 1e-9 * (std::abs(i.from) + std::abs(i.to));
-      i.from += middle - slack, i.to += middle + slack;
-    };
-    widen(r.x, width_ / 2.0);
-    widen(r.y, height_ / 2.0);
-    return r;
-  }
-
-  double width_, height_, stepX_, stepY_;
-  CameraKind kind_;
-  Triple origin_;
-  Triple axes_[3];
-};
 
 /// Tiles of a grid that a rectangle touches; empty where to < from.
 struct Tiles {
@@ -180,14 +43,11 @@ Tiles touched(const Rectangle& r, const TileGrid& grid) {
 }  // namespace
 
 TileLists tileLists(const Scene& scene, int width, int height, int samples, const TileGrid& grid) {
-  Projector projector(scene, width, height);
+  const Silhouette silhouette(scene, width, height, samples);
   const auto& solids = scene.world.solids;
   std::vector<Tiles> tiles(solids.size());
   inParallel(solids.size(), [&](std::size_t i) {
-    Rectangle r = std::visit([&](const auto& s) { return projector.rectangle(s); }, solids[i].shape);
-    if (samples > 1 && !r.everywhere && !r.x.empty()) {  // samples lie up to half a pixel off the centre
-      r.x.from -= 0.5, r.x.to += 0.5, r.y.from -= 0.5, r.y.to += 0.5;
-    }
+    Rectangle r = std::visit([&](const auto& s) { return silhouette.rectangle(s); }, solids[i].shape);
     tiles[i] = touched(r, grid);
   });
 

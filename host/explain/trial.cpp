@@ -74,14 +74,9 @@ Rows rowsOf(const Shape& shape, std::int32_t index, const Setting& s) {
     rows.kind = kindNumber(shape);
     return rows;
   }
-  std::array<std::vector<f128>, kindCount> numbers;
-  std::vector<RowWriter> writers;
-  for (auto& list : numbers) writers.emplace_back(s.real, &list);
-  bool grazing = false;
-  std::visit([&](const auto& solid) { packEye(solid, s.eye, index, EyeWriters{writers.data(), &grazing}); }, shape);
-  for (int kind = 0; kind < kindCount; ++kind)
-    if (!numbers[static_cast<std::size_t>(kind)].empty())
-      rows = {kind, std::move(numbers[static_cast<std::size_t>(kind)])};
+  EyeRecord<f128> record(s.real);
+  std::visit([&](const auto& solid) { packEye(solid, s.eye, f128(index), record); }, shape);
+  if (record.kind >= 0) rows = {record.kind, {record.row[0], record.row[0] + 4 * record.rows}};
   return rows;
 }
 

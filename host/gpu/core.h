@@ -33,12 +33,15 @@ struct Core {
 struct Buffer::Impl {
   std::shared_ptr<Core> core;
   OfDevice<VkDeviceMemory> memory;
-  OfDevice<VkBuffer> buffer;  // dies before its memory
+  OfDevice<VkBuffer> buffer;    // dies before its memory
+  OfDevice<VkBufferView> view;  // of texels
   std::size_t bytes = 0, allocated = 0;
   BufferUse use{};
   std::byte* mapping = nullptr;
   ~Impl() { core->bytesAllocated -= allocated; }
 };
+
+VkDescriptorType descriptorType(ShaderInterface::Kind kind);
 
 struct Pipeline::Impl {
   std::shared_ptr<Core> core;

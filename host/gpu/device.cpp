@@ -134,9 +134,12 @@ std::span<std::byte> Buffer::bytes() const {
 
 Buffer Device::makeBuffer(std::size_t bytes, BufferUse use) {
   Core& core = *impl_->core;
-  const bool uniform = use == BufferUse::uniform;
+  const bool uniform = use == BufferUse::uniform, texels = use == BufferUse::texels;
+  constexpr std::uint64_t texelBytes = 16;
   if (uniform) {
     requireAtMost(bytes, core.info.limits.maxUniformBufferRange, "a uniform buffer", core);
+  } else if (texels) {
+    requireAtMost(bytes, core.info.limits.maxTexelBufferElements * texelBytes, "a texel buffer", core);
   } else {
     requireAtMost(bytes, core.info.limits.maxStorageBufferRange, "a storage buffer", core);
   }
@@ -149,7 +152,9 @@ Buffer Device::makeBuffer(std::size_t bytes, BufferUse use) {
   const VkBufferCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
       .size = std::max<std::size_t>(bytes, 16),  // Vulkan has no empty buffers
-      .usage = VkBufferUsageFlags(uniform ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)};
+      .usage = VkBufferUsageFlags(uniform  ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
+                                  : texels ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT
+                                           : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)};
   VkBuffer buffer{};
   check(core.vkCreateBuffer(core.device, &info, nullptr, &buffer), "make a buffer");
   impl->buffer = {core.device, buffer, core.vkDestroyBuffer};
@@ -173,6 +178,15 @@ Buffer Device::makeBuffer(std::size_t bytes, BufferUse use) {
   core.bytesAllocated += needs.size;
   core.peakBytes = std::max(core.peakBytes, core.bytesAllocated);
   check(core.vkBindBufferMemory(core.device, buffer, memory, 0), "bind a buffer to memory");
+  if (texels) {
+    const VkBufferViewCreateInfo viewInfo{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                          .buffer = buffer,
+                                          .format = VK_FORMAT_R32G32B32A32_UINT,
+                                          .range = std::max(bytes / texelBytes, std::size_t{1}) * texelBytes};
+    VkBufferView view{};
+    check(core.vkCreateBufferView(core.device, &viewInfo, nullptr, &view), "view a buffer as texels");
+    impl->view = {core.device, view, core.vkDestroyBufferView};
+  }
   void* mapping = nullptr;
   check(core.vkMapMemory(core.device, memory, 0, VK_WHOLE_SIZE, 0, &mapping), "map memory");
   impl->mapping = static_cast<std::byte*>(mapping);

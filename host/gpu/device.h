@@ -16,7 +16,7 @@ namespace solidcast::gpu {
 enum class Validation { automatic, on, off };  // automatic: on where the layer is installed and SOLIDCAST_VALIDATION=1
 
 struct DeviceLimits {
-  std::uint32_t maxUniformBufferRange, maxStorageBufferRange, maxWorkGroupInvocations;
+  std::uint32_t maxUniformBufferRange, maxStorageBufferRange, maxTexelBufferElements, maxWorkGroupInvocations;
   std::uint32_t maxWorkGroupCount[3], maxWorkGroupSize[3];
   std::uint64_t maxMemoryAllocationSize, heapSize;
   std::uint32_t subgroupSize;
@@ -58,7 +58,9 @@ class Buffer {  // host-visible, persistently mapped; moved, never copied
 
 /// `readback` is a storage buffer that shaders write and the host reads: on a discrete GPU it lies in cached host
 /// memory, the others in the device's own memory where that can be mapped.
-enum class BufferUse { uniform, storage, readback };
+/// `texels` is read by number as rows of four 32-bit words (usamplerBuffer): what lanes load from places of their own
+/// comes quickest from there (docs/performance-notes.md).
+enum class BufferUse { uniform, storage, readback, texels };
 
 class Pipeline {
  public:

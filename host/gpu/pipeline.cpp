@@ -16,6 +16,7 @@ bool serves(const Core& core, std::uint32_t capability) {
   switch (capability) {
     case spv::CapabilityMatrix:
     case spv::CapabilityShader:
+    case spv::CapabilitySampledBuffer:
       return true;
     case spv::CapabilityFloat64:
       return core.info.float64;
@@ -92,7 +93,7 @@ Pipeline Device::makePipeline(std::span<const std::uint32_t> whole, const Specia
   for (const auto& binding : shader.bindings) {
     bindings.push_back(
         {.binding = binding.number,
-         .descriptorType = binding.uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+         .descriptorType = descriptorType(binding.kind),
          .descriptorCount = 1,
          .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
          .pImmutableSamplers = nullptr});

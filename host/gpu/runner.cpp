@@ -6,6 +6,27 @@
 
 namespace solidcast::gpu {
 
+namespace {
+
+ShaderInterface::Kind kindOf(BufferUse use) {
+  return use == BufferUse::uniform  ? ShaderInterface::Kind::uniform
+         : use == BufferUse::texels ? ShaderInterface::Kind::texels
+                                    : ShaderInterface::Kind::storage;
+}
+
+}  // namespace
+
+VkDescriptorType descriptorType(ShaderInterface::Kind kind) {
+  switch (kind) {
+    case ShaderInterface::Kind::uniform:
+      return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    case ShaderInterface::Kind::texels:
+      return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    default:
+      return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  }
+}
+
 Runner::Runner(std::shared_ptr<Core> core) : core_(std::move(core)) {
   const Core& c = *core_;
   const VkCommandPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
@@ -40,9 +61,9 @@ Runner::Bound Runner::checked(const Dispatch& dispatch) const {
     const std::string name = "binding " + std::to_string(binding.number) + " (" + binding.name + ")";
     const Buffer* buffer = binding.number < dispatch.buffers.size() ? dispatch.buffers[binding.number] : nullptr;
     if (!buffer || !buffer->impl_) throw Error(Exit::shader, "the shader's " + name + " was given no buffer");
-    if ((buffer->impl_->use == BufferUse::uniform) != binding.uniform) {
-      throw Error(Exit::shader, "the shader's " + name + " is a " + (binding.uniform ? "uniform" : "storage") +
-                                    " buffer, but was given one of the other kind");
+    if (kindOf(buffer->impl_->use) != binding.kind) {
+      throw Error(Exit::shader, "the shader's " + name + " is " + kindName(binding.kind) +
+                                    ", but was given one of another kind");
     }
     bound.buffers.push_back(buffer->impl_.get());
   }
@@ -71,10 +92,11 @@ void Runner::reserveDescriptors(std::size_t sets, std::size_t buffers) {
   setCapacity_ = std::max<std::size_t>({sets, 2 * setCapacity_, 16});
   bufferCapacity_ = std::max<std::size_t>({buffers, 2 * bufferCapacity_, 64});
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, std::uint32_t(bufferCapacity_)},
-                                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::uint32_t(bufferCapacity_)}};
+                                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::uint32_t(bufferCapacity_)},
+                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, std::uint32_t(bufferCapacity_)}};
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .maxSets = std::uint32_t(setCapacity_),
-                                        .poolSizeCount = 2,
+                                        .poolSizeCount = 3,
                                         .pPoolSizes = sizes};
   VkDescriptorPool pool{};
   check(c.vkCreateDescriptorPool(c.device, &info, nullptr, &pool), "make a descriptor pool");
@@ -91,10 +113,12 @@ VkDescriptorSet Runner::descriptorSet(const Bound& bound) {
   VkDescriptorSet set{};
   check(c.vkAllocateDescriptorSets(c.device, &info, &set), "make a descriptor set");
   std::vector<VkDescriptorBufferInfo> ranges(bound.buffers.size());
+  std::vector<VkBufferView> views(bound.buffers.size());
   std::vector<VkWriteDescriptorSet> writes;
   for (std::size_t i = 0; i < bound.buffers.size(); ++i) {
     const auto& binding = bound.pipeline->interface.bindings[i];
     ranges[i] = {bound.buffers[i]->buffer.get(), 0, VK_WHOLE_SIZE};
+    views[i] = bound.buffers[i]->view.get();
     writes.push_back(
         {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
          .pNext = nullptr,
@@ -102,10 +126,10 @@ VkDescriptorSet Runner::descriptorSet(const Bound& bound) {
          .dstBinding = binding.number,
          .dstArrayElement = 0,
          .descriptorCount = 1,
-         .descriptorType = binding.uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+         .descriptorType = descriptorType(binding.kind),
          .pImageInfo = nullptr,
          .pBufferInfo = &ranges[i],
-         .pTexelBufferView = nullptr});
+         .pTexelBufferView = &views[i]});
   }
   c.vkUpdateDescriptorSets(c.device, std::uint32_t(writes.size()), writes.data(), 0, nullptr);
   return set;

@@ -39,6 +39,7 @@ struct Module {
   explicit Module(std::span<const std::uint32_t> spirv, ShaderInterface& out);
   void add(spv::Op op, std::span<const std::uint32_t> operands, ShaderInterface& out);
   std::uint32_t byteSize(std::uint32_t type, std::uint32_t matrixStride = 0) const;
+  bool isTexelBuffer(std::uint32_t type) const;
 };
 
 Module::Module(std::span<const std::uint32_t> spirv, ShaderInterface& out) {
@@ -82,6 +83,8 @@ void Module::add(spv::Op op, std::span<const std::uint32_t> w, ShaderInterface& 
     case spv::OpTypeRuntimeArray:
     case spv::OpTypeStruct:
     case spv::OpTypePointer:
+    case spv::OpTypeImage:
+    case spv::OpTypeSampledImage:
       types[w[0]] = {op, {w.begin() + 1, w.end()}};
       break;
     case spv::OpConstant:
@@ -104,6 +107,14 @@ void Module::add(spv::Op op, std::span<const std::uint32_t> w, ShaderInterface& 
     default:
       break;
   }
+}
+
+/// A sampler of a buffer: texels read by number.
+bool Module::isTexelBuffer(std::uint32_t id) const {
+  const Type& type = types.at(id);
+  if (type.op == spv::OpTypeSampledImage) return isTexelBuffer(type.operands[0]);
+  constexpr std::size_t dimension = 1, sampled = 5;
+  return type.op == spv::OpTypeImage && type.operands[dimension] == spv::DimBuffer && type.operands[sampled] == 1;
 }
 
 /// Bytes from the start to the last member's end, as the offsets and strides in the module say.
@@ -174,26 +185,40 @@ ShaderInterface readInterface(std::span<const std::uint32_t> spirv,
     const bool storage = variable.storage == spv::StorageClassStorageBuffer ||
                          module.decorations[block].contains(spv::DecorationBufferBlock);
     const bool uniform = variable.storage == spv::StorageClassUniform && !storage;
-    if (!storage && !uniform) refuse("binding " + std::to_string(number) + " (" + name + ") is not a buffer");
+    const bool texels = variable.storage == spv::StorageClassUniformConstant && module.isTexelBuffer(block);
+    if (!storage && !uniform && !texels) refuse("binding " + std::to_string(number) + " (" + name + ") is not a buffer");
     if (const auto set = own.find(spv::DecorationDescriptorSet); set != own.end() && set->second != 0) {
       refuse("binding " + std::to_string(number) + " (" + name + ") is in set " + std::to_string(set->second) +
              "; only set 0 is used");
     }
-    out.bindings.push_back({number, uniform, name});
+    using Kind = ShaderInterface::Kind;
+    out.bindings.push_back({number, storage ? Kind::storage : uniform ? Kind::uniform : Kind::texels, name});
   }
   std::sort(out.bindings.begin(), out.bindings.end(), [](const auto& a, const auto& b) {
-    return std::pair(a.number, a.uniform) < std::pair(b.number, b.uniform);
+    return std::pair(a.number, a.kind) < std::pair(b.number, b.kind);
   });
   // One buffer may be seen as several types (float and uint, say) at the same binding.
-  const auto same = [](const auto& a, const auto& b) { return a.number == b.number && a.uniform == b.uniform; };
+  const auto same = [](const auto& a, const auto& b) { return a.number == b.number && a.kind == b.kind; };
   out.bindings.erase(std::unique(out.bindings.begin(), out.bindings.end(), same), out.bindings.end());
   for (std::size_t i = 1; i < out.bindings.size(); ++i) {
     if (out.bindings[i].number == out.bindings[i - 1].number) {
-      refuse("binding " + std::to_string(out.bindings[i].number) + " is both a uniform and a storage buffer (" +
+      refuse("binding " + std::to_string(out.bindings[i].number) + " is both " + kindName(out.bindings[i - 1].kind) + " and " + kindName(out.bindings[i].kind) + " (" +
              out.bindings[i - 1].name + ", " + out.bindings[i].name + ")");
     }
   }
   return out;
+}
+
+const char* kindName(ShaderInterface::Kind kind) {
+  switch (kind) {
+    case ShaderInterface::Kind::storage:
+      return "a storage buffer";
+    case ShaderInterface::Kind::uniform:
+      return "a uniform buffer";
+    case ShaderInterface::Kind::texels:
+      return "a texel buffer";
+  }
+  return "";
 }
 
 std::string capabilityName(std::uint32_t capability) {

@@ -10,9 +10,10 @@
 namespace solidcast::gpu {
 
 struct ShaderInterface {
+  enum class Kind { storage, uniform, texels };
   struct Binding {
     std::uint32_t number = 0;
-    bool uniform = false;  // uniform buffer; otherwise storage buffer
+    Kind kind = Kind::storage;
     std::string name;      // as in the source, for messages; may be empty
   };
   std::string entryPoint;
@@ -24,11 +25,12 @@ struct ShaderInterface {
 };
 
 /// `specialisation` (by constant_id) matters for the workgroup's size alone. Throws Exit::shader for what is no SPIR-V
-/// compute module, and for resources that this project has no use for (images, samplers, sets above 0).
+/// compute module, and for resources that this project has no use for (images, samplers of any but texel buffers, sets above 0).
 ShaderInterface readInterface(std::span<const std::uint32_t> spirv,
                               const std::map<std::uint32_t, std::uint32_t>& specialisation);
 
 /// "Float64", ...; the number as text for the ones without a name here.
+const char* kindName(ShaderInterface::Kind kind);  // "a storage buffer", ...
 std::string capabilityName(std::uint32_t capability);
 
 }  // namespace solidcast::gpu

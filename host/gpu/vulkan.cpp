@@ -227,6 +227,7 @@ DeviceInfo Instance::describe(VkPhysicalDevice device, int index) const {
   info.int64 = features.features.shaderInt64;
   info.limits.maxUniformBufferRange = limits.maxUniformBufferRange;
   info.limits.maxStorageBufferRange = limits.maxStorageBufferRange;
+  info.limits.maxTexelBufferElements = limits.maxTexelBufferElements;
   info.limits.maxWorkGroupInvocations = limits.maxComputeWorkGroupInvocations;
   for (int axis = 0; axis < 3; ++axis) {
     info.limits.maxWorkGroupCount[axis] = limits.maxComputeWorkGroupCount[axis];

@@ -35,6 +35,8 @@
   X(vkMapMemory)                      \
   X(vkCreateBuffer)                   \
   X(vkDestroyBuffer)                  \
+  X(vkCreateBufferView)               \
+  X(vkDestroyBufferView)              \
   X(vkGetBufferMemoryRequirements)    \
   X(vkBindBufferMemory)               \
   X(vkCreateShaderModule)             \

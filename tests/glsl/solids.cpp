@@ -148,35 +148,29 @@ std::vector<Float3> Packed::directions(const std::vector<Aimed>& all) const {
 }
 
 std::map<int, Packed> packedForEye(const std::vector<Aimed>& all, RealType type, std::vector<std::size_t>& none) {
-  std::vector<RowWriter> writers(kindCount, RowWriter(type));
   std::map<int, Packed> packed;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto& o = all[i].ray.origin;
-    EyeFrame eye{V3(o[0], o[1], o[2]), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 1};
+    EyeFrame eye;
+    eye.origin = {o[0], o[1], o[2]}, eye.right = {1, 0, 0}, eye.upward = {0, 1, 0}, eye.backward = {0, 0, 1};
     const f128 away = std::visit([&](const auto& s) { return length(V3(ball(s).center) - eye.origin); }, all[i].shape);
     if (type != RealType::f64 && away > 0) eye.unit = powerOfTwo(away);
-    bool grazing = false, onFace = false;
-    const EyeWriters out{writers.data(), &grazing};
-    std::vector<std::size_t> before;
-    for (const RowWriter& w : writers) before.push_back(w.rows());
-    std::visit([&](const auto& s) { packEye(s, eye, 0, out); }, all[i].shape);
+    EyeRecord<f128> record(type);
+    bool onFace = false;
+    std::visit([&](const auto& s) { packEye(s, eye, f128(0), record); }, all[i].shape);
     if (const auto* box = std::get_if<AABox>(&all[i].shape)) onFace = eyeOnFacePlane(*box, eye);
-    const auto form = std::find_if(writers.begin(), writers.end(), [&](const RowWriter& w) {
-      return w.rows() != before[static_cast<std::size_t>(&w - writers.data())];
-    });
-    if (form == writers.end()) {
+    if (record.kind < 0) {
       none.push_back(i);
       continue;
     }
-    const auto kind = static_cast<std::size_t>(form - writers.begin());
-    Packed& p = packed.try_emplace(static_cast<int>(kind), type).first->second;
+    Packed& p = packed.try_emplace(record.kind, type).first->second;
     p.elements.push_back(i);
-    p.row.push_back(static_cast<std::uint32_t>(before[kind]));
+    p.row.push_back(static_cast<std::uint32_t>(p.rows.rows()));
+    for (int r = 0; r < record.rows; ++r) p.rows.add(record.row[r]);
     p.unit.push_back(static_cast<float>(eye.unit));
-    p.grazing.push_back(grazing);
+    p.grazing.push_back(record.grazing);
     p.onFace.push_back(onFace);
   }
-  for (auto& [kind, p] : packed) p.rows = writers[static_cast<std::size_t>(kind)];
   return packed;
 }
 

@@ -177,7 +177,7 @@ TEST_F(DeviceTest, BuffersThatDoNotFitTheShaderAreNamed) {
                     [&] {
                       run({&twice, {&uniform}, {}, {1, 1, 1}});
                     }),
-            "the shader's binding 0 (Values) is a storage buffer, but was given one of the other kind");
+            "the shader's binding 0 (Values) is a storage buffer, but was given one of another kind");
   const std::uint32_t surplus = 0;
   const Buffer values = filled<std::uint32_t>({1, 1, 1, 1, 1, 1, 1, 1});
   const auto pushed = errorOf(Exit::shader, [&] {

@@ -7,25 +7,28 @@
 
 namespace solidcast {
 
+template <class T>
 struct Corners {
-  V3 lo, hi;
+  Vec3<T> lo, hi;
 };
-inline Corners corners(const AABox& box) {
-  V3 a(box.corner1), b(box.corner2), lo, hi;
+template <class T = f128>
+Corners<T> corners(const AABox& box) {
+  Vec3<T> a(box.corner1), b(box.corner2), lo, hi;
   for (int i = 0; i < 3; ++i) lo[i] = smaller(a[i], b[i]), hi[i] = larger(a[i], b[i]);
   return {lo, hi};
 }
 
 /// A box without thickness on one axis, seen from outside that plane, is a quad whose normal faces the eye. (In the
 /// box's own form every hit would be a tie of the two faces.)
-inline bool packFlat(const Corners& c, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  V3 size = c.hi - c.lo;
+template <class T>
+bool packFlat(const Corners<T>& c, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  Vec3<T> size = c.hi - c.lo;
   int flat = size.x == 0 ? 0 : size.y == 0 ? 1 : size.z == 0 ? 2 : -1;
   if (flat < 0) return false;
   int a = (flat + 1) % 3, b = (flat + 2) % 3;
   if (size[a] == 0 || size[b] == 0 || eye.origin[flat] == c.lo[flat]) return false;
   if (eye.origin[flat] < c.lo[flat]) std::swap(a, b);
-  Span s{c.lo, {}, {}};
+  Span<T> s{c.lo, {}, {}};
   s.e1[a] = size[a], s.e2[b] = size[b];
   spanForms(s, true, eye, index, out);
   return true;
@@ -33,38 +36,40 @@ inline bool packFlat(const Corners& c, const EyeFrame& eye, f128 index, const Ey
 
 /// Axes on which the eye is so near the plane of a face that a bound of s may be in doubt: d_i is then small against
 /// |d| where that bound is about s. (d_i loses 2^-28 below 2^-22 |d| in fp64, 2^-13 in double-float.)
-inline std::array<bool, 3> nearFacePlane(const AABox& box, const EyeFrame& eye) {
-  Corners c = corners(box);
-  f128 plane[3], farthest = 0;
+template <class T>
+std::array<bool, 3> nearFacePlane(const AABox& box, const Frame<T>& eye) {
+  Corners<T> c = corners<T>(box);
+  T plane[3], farthest = 0;
   for (int i = 0; i < 3; ++i) {
-    f128 a = fabsq(c.lo[i] - eye.origin[i]), b = fabsq(c.hi[i] - eye.origin[i]);
+    T a = magnitude(c.lo[i] - eye.origin[i]), b = magnitude(c.hi[i] - eye.origin[i]);
     plane[i] = smaller(a, b);
     farthest += larger(a, b);
   }
   std::array<bool, 3> near{};
-  for (std::size_t i = 0; i < 3; ++i) near[i] = plane[i] <= ldexpq(farthest, -10);
+  for (std::size_t i = 0; i < 3; ++i) near[i] = plane[i] <= shifted(farthest, -10);
   return near;
 }
 
 /// box.glsl needs BOX_FACE.
-inline bool eyeOnFacePlane(const AABox& box, const EyeFrame& eye) {
+template <class T>
+bool eyeOnFacePlane(const AABox& box, const Frame<T>& eye) {
   std::array<bool, 3> near = nearFacePlane(box, eye);
   return near[0] || near[1] || near[2];
 }
 
-inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  Corners c = corners(box);
+template <class T>
+void packEye(const AABox& box, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  Corners<T> c = corners<T>(box);
   if (packFlat(c, eye, index, out)) return;
-  RowWriter& rows = out.box();
-  V3 up, cap, low1, low2, onFace;
-  f128 big = bigNumber(rows.type()), steep = steepNumber(rows.type()), steepest = 0;
-  f128 nearest = -1, farthest = 0;  // plane of a face that can be hit; corner
+  Vec3<T> up, cap, low1, low2, onFace;
+  T big = bigNumber(out.type), steep = steepNumber(out.type), steepest = 0;
+  T nearest = -1, farthest = 0;  // plane of a face that can be hit; corner
   bool inside = true;
   std::array<bool, 3> near = nearFacePlane(box, eye);
   for (int i = 0; i < 3; ++i) {
-    f128 a = (c.lo[i] - eye.origin[i]) / eye.unit, b = (c.hi[i] - eye.origin[i]) / eye.unit;
-    farthest += larger(fabsq(a), fabsq(b));
-    onFace[i] = near[static_cast<std::size_t>(i)] ? ldexpq(1, -26) : ldexpq(1, 100);
+    T a = (c.lo[i] - eye.origin[i]) / eye.unit, b = (c.hi[i] - eye.origin[i]) / eye.unit;
+    farthest += larger(magnitude(a), magnitude(b));
+    onFace[i] = shifted(T(1), near[static_cast<std::size_t>(i)] ? -26 : 100);
     if (a > 0 || b < 0) {
       inside = false;
       up[i] = 1 / (a > 0 ? a : b), cap[i] = 0;
@@ -75,45 +80,46 @@ inline void packEye(const AABox& box, const EyeFrame& eye, f128 index, const Eye
       low2[i] = b == 0 ? steep : 1 / b;
       // Eye on this face: below the bound of any ray that leaves by it (the face itself is at t = 0, no hit), above
       // all others.
-      if (a == 0 || b == 0) cap[i] = ldexpq(steep, rows.type() == RealType::f64 ? -66 : -42);
+      if (a == 0 || b == 0) cap[i] = shifted(steep, out.type == RealType::f64 ? -66 : -42);
     }
-    f128 plane = smaller(fabsq(a), fabsq(b));
+    T plane = smaller(magnitude(a), magnitude(b));
     if ((a > 0 || b < 0) && (nearest < 0 || plane < nearest)) nearest = plane;
-    for (f128 v : {up[i], low1[i], low2[i]})
-      if (fabsq(v) != steep) steepest = larger(steepest, fabsq(v));
+    for (T v : {up[i], low1[i], low2[i]})
+      if (magnitude(v) != steep) steepest = larger(steepest, magnitude(v));
   }
   if (inside)
     for (int i = 0; i < 3; ++i)
-      for (f128 v : {c.lo[i], c.hi[i]}) {
-        f128 plane = fabsq(v - eye.origin[i]) / eye.unit;
+      for (T v : {c.lo[i], c.hi[i]}) {
+        T plane = magnitude(v - eye.origin[i]) / eye.unit;
         if (nearest < 0 || plane < nearest) nearest = plane;
       }
   out.mayGraze(nearest, farthest);
-  rows.row(up, index);
-  rows.row(cap, inside ? 1 : 0);
-  rows.row(low1, steepest > 0 ? 1 / steepest : 1);
-  rows.row(low2, ldexpq(1, -26));
-  rows.row(onFace, 0);
+  out.kind = kinds::box;
+  out.add(up, index);
+  out.add(cap, inside ? 1 : 0);
+  out.add(low1, steepest > 0 ? 1 / steepest : T(1));
+  out.add(low2, shifted(T(1), -26));
+  out.add(onFace, 0);
 }
 
 inline void packWorld(const AABox& box, V3 origin, f128 index, RowWriter& out) {
-  Corners c = corners(box);
+  Corners<f128> c = corners(box);
   out.row(c.lo - origin, index);
   out.row(c.hi - origin, 0);
 }
 
-inline Outline outline(const AABox& box) {
-  Outline o;
+inline std::array<Triple, 8> outline(const AABox& box, const Triple& origin) {
+  const Triple a = difference(box.corner1, origin), b = difference(box.corner2, origin);
+  std::array<Triple, 8> points;
   for (std::size_t i = 0; i < 8; ++i)
-    for (std::size_t k = 0; k < 3; ++k) o.points[i][k] = (i >> k & 1 ? box.corner2 : box.corner1)[k];
-  o.count = 8;
-  return o;
+    for (std::size_t k = 0; k < 3; ++k) points[i][k] = (i >> k & 1 ? b : a)[k];
+  return points;
 }
 
 inline Ball ball(const AABox& box) { return {box.corner1, distance(box.corner1, box.corner2)}; }
 
 inline Cut cut(const AABox& box, const RayQ& ray) {
-  Corners c = corners(box);
+  Corners<f128> c = corners(box);
   f128 enter = -1, leave = -1;
   bool bounded = false, entered = false, almost = false;
   for (int i = 0; i < 3; ++i) {
@@ -134,7 +140,7 @@ inline Cut cut(const AABox& box, const RayQ& ray) {
 }
 
 inline Surface surface(const AABox& box, const RayQ& ray, f128 t) {
-  Corners c = corners(box);
+  Corners<f128> c = corners(box);
   V3 p = ray.origin + t * ray.direction;
   // Entered from outside: the normal is against the ray; left from inside or from the surface: along it. Faces on the
   // other side are not asked: a ray that enters at an edge may leave there too.

@@ -4,17 +4,20 @@
 
 namespace solidcast {
 
-inline void packEye(const Disc& disc, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  V3 n = normalized(V3(disc.normal)), f = eye.relative(disc.center);
-  f128 r = disc.radius / eye.unit, num = dot(n, f);
-  if (dot(V3(disc.normal), f) == 0) return;  // as given: rounding the unit normal would move the plane
-  V3 e1 = orthogonal(n), e2 = cross(n, e1);
-  V3 U = (num * e1 - dot(f, e1) * n) / (r * num), V = (num * e2 - dot(f, e2) * n) / (r * num), m = n / num;
-  RowWriter& rows = out.disc();
-  rows.row(eye.toCamera(m), -num);
-  rows.row(eye.toCamera(U), index);
-  rows.row(eye.toCamera(V), ldexpq(1, -26) / length(m));
-  rows.row(1 / (dot(m, m) + dot(U, U) + dot(V, V)), 0, 0, 0);
+template <class T>
+void packEye(const Disc& disc, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  Vec3<T> n = normalized(Vec3<T>(disc.normal)), f = eye.relative(disc.center);
+  T r = disc.radius / eye.unit, num = dot(n, f);
+  out.scales(num, length(f));
+  if (dot(Vec3<T>(disc.normal), f) == 0) return;  // as given: rounding the unit normal would move the plane
+  Vec3<T> e1 = orthogonal(n), e2 = cross(n, e1);
+  // (num e1 - (f.e1) n) / (r num) and the same of e2, without cancelling
+  Vec3<T> U = cross(e2, f) / (r * num), V = cross(f, e1) / (r * num), m = n / num;
+  out.kind = kinds::disc;
+  out.add(eye.toCamera(m), -num);
+  out.add(eye.toCamera(U), index);
+  out.add(eye.toCamera(V), shifted(T(1), -26) / length(m));
+  out.add(1 / (dot(m, m) + dot(U, U) + dot(V, V)), 0, 0, 0);
   out.mayGraze(num, length(f) + r);
 }
 

@@ -1,6 +1,7 @@
 // What every solid's packing and second pass are written with: the eye's frame, the writer of rows, rays in binary128.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -12,36 +13,46 @@ namespace solidcast {
 enum class RealType { f32, f64, df32 };  // ARITHMETIC 0, 1, 2 of shaders/numeric.glsl
 
 /// Unit roundoff u of the type, as numeric.glsl states it.
-inline f128 unitRoundoff(RealType type) {
-  return ldexpq(1, type == RealType::f32 ? -24 : type == RealType::f64 ? -53 : -44);
+inline double unitRoundoff(RealType type) {
+  return std::ldexp(1.0, type == RealType::f32 ? -24 : type == RealType::f64 ? -53 : -44);
 }
 /// Stands for infinity in records: BIG of numeric.glsl. Half as large a one survives a product with a direction.
-inline f128 bigNumber(RealType type) { return type == RealType::f64 ? f128(1e250) : f128(3e37); }
-inline f128 steepNumber(RealType type) { return type == RealType::f64 ? f128(1e240) : f128(1e30); }
+inline double bigNumber(RealType type) { return type == RealType::f64 ? 1e250 : 3e37; }
+inline double steepNumber(RealType type) { return type == RealType::f64 ? 1e240 : 1e30; }
 
-/// Rows of four numbers, each rounded once from binary128.
+/// Bytes of one row of four numbers.
+inline std::size_t rowBytes(RealType type) { return type == RealType::f32 ? 16 : 32; }
+
+/// One row of four numbers, each rounded once from T; `to` has room for rowBytes().
+template <class T>
+void writeRow(std::byte* to, RealType type, const T (&v)[4]) {
+  if (type == RealType::f64) {
+    double d[4];
+    for (int i = 0; i < 4; ++i) d[i] = static_cast<double>(v[i]);
+    std::memcpy(to, d, sizeof d);
+    return;
+  }
+  float high[4], low[4];
+  for (int i = 0; i < 4; ++i) high[i] = static_cast<float>(v[i]);
+  std::memcpy(to, high, sizeof high);
+  if (type != RealType::df32) return;
+  for (int i = 0; i < 4; ++i) low[i] = static_cast<float>(v[i] - high[i]);
+  std::memcpy(to + sizeof high, low, sizeof low);
+}
+
+/// Rows of four numbers, one after the other.
 class RowWriter {
  public:
   /// `unrounded`, where given, takes the numbers as they were before rounding (host/explain).
   explicit RowWriter(RealType type, std::vector<f128>* unrounded = nullptr) : type_(type), unrounded_(unrounded) {}
 
   void row(V3 v, f128 w) { row(v.x, v.y, v.z, w); }
-  void row(f128 x, f128 y, f128 z, f128 w) {
-    const f128 v[4] = {x, y, z, w};
+  void row(f128 x, f128 y, f128 z, f128 w) { add<f128>({x, y, z, w}); }
+  template <class T>
+  void add(const T (&v)[4]) {
     if (unrounded_) unrounded_->insert(unrounded_->end(), v, v + 4);
-    if (type_ == RealType::f64) {
-      double d[4];
-      for (int i = 0; i < 4; ++i) d[i] = static_cast<double>(v[i]);
-      append(d, sizeof d);
-    } else {
-      float high[4], low[4];
-      for (int i = 0; i < 4; ++i) {
-        high[i] = static_cast<float>(v[i]);
-        low[i] = static_cast<float>(v[i] - high[i]);
-      }
-      append(high, sizeof high);
-      if (type_ == RealType::df32) append(low, sizeof low);
-    }
+    bytes_.resize(bytes_.size() + rowBytes(type_));
+    writeRow(bytes_.data() + bytes_.size() - rowBytes(type_), type_, v);
     ++rows_;
   }
 
@@ -50,11 +61,6 @@ class RowWriter {
   const std::vector<std::byte>& bytes() const { return bytes_; }
 
  private:
-  void append(const void* data, std::size_t size) {
-    const auto* from = static_cast<const std::byte*>(data);
-    bytes_.insert(bytes_.end(), from, from + size);
-  }
-
   RealType type_;
   std::vector<f128>* unrounded_;
   std::size_t rows_ = 0;
@@ -63,30 +69,64 @@ class RowWriter {
 
 /// The shared origin of all rays and the camera's axes (unit, orthogonal), with the unit of length of the records:
 /// lengths are divided by `unit`, a power of two that keeps fp32's squares in range (1 for fp64).
-struct EyeFrame {
-  V3 origin, right, upward, backward;
-  f128 unit = 1;
+template <class T>
+struct Frame {
+  Vec3<T> origin, right, upward, backward;
+  T unit = 1;
 
-  V3 toCamera(V3 world) const { return {dot(world, right), dot(world, upward), dot(world, backward)}; }
-  V3 relative(const Triple& point) const { return (V3(point) - origin) / unit; }
+  Frame() = default;
+  template <class U>
+  explicit Frame(const Frame<U>& f)
+      : origin(f.origin), right(f.right), upward(f.upward), backward(f.backward), unit(static_cast<T>(f.unit)) {}
+
+  Vec3<T> toCamera(Vec3<T> world) const { return {dot(world, right), dot(world, upward), dot(world, backward)}; }
+  Vec3<T> relative(const Triple& point) const { return (Vec3<T>(point) - origin) / unit; }
 };
+using EyeFrame = Frame<f128>;
 
-/// One writer a kind, by its number in solids.def: a solid may need another kind's careful form (a sphere with the eye
-/// on it is cast as a quadric), one that holds the eye in its plane needs none.
-struct EyeWriters {
-  RowWriter* writers;
-  bool* grazing;  // set where hit.glsl's GRAZING is needed
-
-  /// A flat solid whose plane passes the eye at `distance` and whose farthest point is at `farthest`: the cosine is at
-  /// least their ratio, and s keeps 2^-28 relative where 7u <= 2^-28 of it.
-  void mayGraze(f128 distance, f128 farthest) const {
-    if (fabsq(distance) < ldexpq(unitRoundoff(type()), 31) * farthest) *grazing = true;
-  }
-#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) \
-  RowWriter& kind() const { return writers[NUMBER]; }
+/// Numbers of solids.def.
+namespace kinds {
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) inline constexpr int kind = NUMBER;
 #include "shaders/solids.def"
 #undef SOLID
-  RealType type() const { return writers[0].type(); }
+}  // namespace kinds
+
+/// One solid's record for one eye, before it is rounded to `type`. A solid may need another kind's careful form (a
+/// sphere with the eye on it is cast as a quadric); one that holds the eye in its plane needs none (kind -1).
+///
+/// T is f128, or a narrower type that is many times as quick: where that would show in the rounded record, `poor` says
+/// so, and the solid has to be packed in f128 (docs/numerics.md: Records in fewer bits).
+template <class T>
+struct EyeRecord {
+  RealType type;
+  int kind = -1, rows = 0;
+  T row[5][4];
+  bool grazing = false;  // hit.glsl needs GRAZING
+  bool poor = false;
+
+  explicit EyeRecord(RealType t) : type(t) {}
+  void add(T x, T y, T z, T w) {
+    T* to = row[rows++];
+    to[0] = x, to[1] = y, to[2] = z, to[3] = w;
+  }
+  void add(Vec3<T> v, T w) { add(v.x, v.y, v.z, w); }
+
+  /// `value` was summed from terms of this size and its rounding counts relative to itself: what is left of T's bits
+  /// has to be below 2^-3 u.
+  void counts(T value, T terms) {
+    if constexpr (!std::is_same_v<T, f128>)
+      if (!(magnitude(value) >= terms * (type == RealType::f32 ? T(0x1p-20) : T(0x1p-5)))) poor = true;
+  }
+  /// The same for a value that only scales s and the cosine, where 2^-32 relative does no harm.
+  void scales(T value, T terms) {
+    if constexpr (!std::is_same_v<T, f128>)
+      if (!(magnitude(value) >= terms * T(0x1p-18))) poor = true;
+  }
+  /// A flat solid whose plane passes the eye at `distance` and whose farthest point is at `farthest`: the cosine is at
+  /// least their ratio, and s keeps 2^-28 relative where 7u <= 2^-28 of it.
+  void mayGraze(T distance, T farthest) {
+    if (magnitude(distance) < shifted(T(unitRoundoff(type)), 31) * farthest) grazing = true;
+  }
 };
 
 /// A ray in binary128, t counted in lengths of its direction.
@@ -114,15 +154,15 @@ struct Ball {
   Triple center;
   double radius;
 };
-/// Corners whose convex hull holds the solid; none: the ball does.
-struct Outline {
-  std::array<Triple, 8> points{};
-  int count = 0;
-};
+inline Triple difference(const Triple& a, const Triple& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+/// Corners, from `origin`, whose convex hull is the solid; none: the ball has to do.
 template <class Solid>
-Outline outline(const Solid&) {
+std::array<Triple, 0> outline(const Solid&, const Triple&) {
   return {};
 }
-inline double distance(const Triple& a, const Triple& b) { return static_cast<double>(length(V3(a) - V3(b))); }
+inline double distance(const Triple& a, const Triple& b) {
+  const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  return std::sqrt(x * x + y * y + z * z);
+}
 
 }  // namespace solidcast

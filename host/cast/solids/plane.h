@@ -5,17 +5,21 @@
 namespace solidcast {
 
 /// Rows (m, k) (index, weight of s) for any plane n.(p - o) = num, n in world axes and of any length.
-inline bool planeForms(V3 n, f128 num, const EyeFrame& eye, f128 index, RowWriter& out) {
-  if (num == 0 || isZero(n)) return false;  // holds the eye: cannot be hit
-  V3 m = eye.toCamera(n) / num;
-  out.row(m, -num / length(n));
-  out.row(index, ldexpq(1, -26) / length(m), 0, 0);
-  return true;
+template <class T>
+void planeForms(Vec3<T> n, T num, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  if (num == 0 || isZero(n)) return;  // holds the eye: cannot be hit
+  Vec3<T> m = eye.toCamera(n) / num;
+  out.kind = kinds::plane;
+  out.add(m, -num / length(n));
+  out.add(index, shifted(T(1), -26) / length(m), 0, 0);
 }
 
-inline void packEye(const InfinitePlane& plane, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  V3 n(plane.normal);  // as given: a rounded unit normal would put an eye in the plane beside it
-  planeForms(n, dot(n, eye.relative(plane.origin)), eye, index, out.plane());
+template <class T>
+void packEye(const InfinitePlane& plane, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  Vec3<T> n(plane.normal), f = eye.relative(plane.origin);  // n as given: a rounded unit normal would put an eye in the
+  T num = dot(n, f);                                        // plane beside it
+  out.scales(num, length(n) * length(f));
+  planeForms(n, num, eye, index, out);
 }
 
 inline void packWorld(const InfinitePlane& plane, V3 origin, f128 index, RowWriter& out) {

@@ -4,23 +4,26 @@
 
 namespace solidcast {
 
-inline Span span(const Quad& q) { return {V3(q.vertex), V3(q.span1), V3(q.span2)}; }
+template <class T = f128>
+Span<T> span(const Quad& q) {
+  return {Vec3<T>(q.vertex), Vec3<T>(q.span1), Vec3<T>(q.span2)};
+}
 
-inline void packEye(const Quad& quad, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  spanForms(span(quad), true, eye, index, out);
+template <class T>
+void packEye(const Quad& quad, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  spanForms(span<T>(quad), true, eye, index, out);
 }
 
 inline void packWorld(const Quad& quad, V3 origin, f128 index, RowWriter& out) {
   spanWorld(span(quad), origin, index, out);
 }
 
-inline Outline outline(const Quad& q) {
-  Outline o;
+inline std::array<Triple, 4> outline(const Quad& q, const Triple& origin) {
+  const Triple vertex = difference(q.vertex, origin);
+  std::array<Triple, 4> points;
   for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      o.points[i][k] = q.vertex[k] + (i & 1 ? q.span1[k] : 0) + (i & 2 ? q.span2[k] : 0);
-  o.count = 4;
-  return o;
+    for (std::size_t k = 0; k < 3; ++k) points[i][k] = vertex[k] + (i & 1 ? q.span1[k] : 0) + (i & 2 ? q.span2[k] : 0);
+  return points;
 }
 
 inline Ball ball(const Quad& quad) {
@@ -34,7 +37,7 @@ inline Cut cut(const Quad& quad, const RayQ& ray) {
 }
 
 inline Surface surface(const Quad& quad, const RayQ& ray, f128) {
-  Span s = span(quad);
+  Span<f128> s = span(quad);
   SpanCut c = cutSpan(s, ray);
   return {normalized(cross(s.e1, s.e2)), {c.beta, c.gamma, 0}};
 }

@@ -4,69 +4,75 @@
 
 namespace solidcast {
 
+template <class T>
 struct Symmetric {  // 3x3
-  f128 xx, yy, zz, xy, xz, yz;
-  V3 operator*(V3 v) const {
+  T xx, yy, zz, xy, xz, yz;
+  Vec3<T> operator*(Vec3<T> v) const {
     return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
   }
-  f128 norm() const { return sqrtq(xx * xx + yy * yy + zz * zz + 2 * (xy * xy + xz * xz + yz * yz)); }
-  Symmetric operator*(f128 k) const { return {xx * k, yy * k, zz * k, xy * k, xz * k, yz * k}; }
+  T norm() const { return squareRoot(xx * xx + yy * yy + zz * zz + 2 * (xy * xy + xz * xz + yz * yz)); }
+  Symmetric operator*(T k) const { return {xx * k, yy * k, zz * k, xy * k, xz * k, yz * k}; }
 };
 
 /// p'Mp + 2 l.p + j
+template <class T>
 struct QuadricForm {
-  Symmetric M;
-  V3 l;
-  f128 j;
+  Symmetric<T> M;
+  Vec3<T> l;
+  T j;
 };
 
-inline QuadricForm quadricForm(const Quadric& quadric) {
+template <class T = f128>
+QuadricForm<T> quadricForm(const Quadric& quadric) {
   const auto& c = quadric.coefficients;
-  return {{c[0], c[1], c[2], f128(c[3]) / 2, f128(c[4]) / 2, f128(c[5]) / 2},
-          V3{f128(c[6]) / 2, f128(c[7]) / 2, f128(c[8]) / 2},
-          c[9]};
+  return {{c[0], c[1], c[2], T(c[3]) / 2, T(c[4]) / 2, T(c[5]) / 2}, {T(c[6]) / 2, T(c[7]) / 2, T(c[8]) / 2}, c[9]};
 }
 
 /// Rows for A = d'Md, B = w.d, C along rays from the eye; M, w in world axes and in the eye's unit of length.
-inline void quadricForms(Symmetric M, V3 w, f128 C, const EyeFrame& eye, f128 index, RowWriter& out, bool negated) {
-  V3 r = eye.right, u = eye.upward, b = eye.backward;
-  V3 Mr = M * r, Mu = M * u, Mb = M * b;
+template <class T>
+void quadricForms(Symmetric<T> M, Vec3<T> w, T C, const Frame<T>& eye, T index, EyeRecord<T>& out, bool negated) {
+  Vec3<T> r = eye.right, u = eye.upward, b = eye.backward;
+  Vec3<T> Mr = M * r, Mu = M * u, Mb = M * b;
   M = {dot(r, Mr), dot(u, Mu), dot(b, Mb), dot(r, Mu), dot(r, Mb), dot(u, Mb)};
   w = eye.toCamera(w);
-  f128 sign = negated ? -1 : 1;
+  T sign = negated ? -1 : 1;
   if (C < 0) M = M * -1, w = -w, C = -C, sign = -sign;
   // Powers of two that bring |M| to about 1 and C to about |M|: t = tau t', and everything times mu.
-  f128 tau = powerOfTwo(C > 0 ? sqrtq(C / M.norm()) : length(w) / M.norm());
-  f128 mu = 1 / (powerOfTwo(M.norm()) * tau * tau);
+  T tau = powerOfTwo(C > 0 ? squareRoot(C / M.norm()) : length(w) / M.norm());
+  T mu = 1 / (powerOfTwo(M.norm()) * tau * tau);
   M = M * (mu * tau * tau), w = w * (mu * tau), C = C * mu;
-  f128 u0 = unitRoundoff(out.type()), size = M.norm(), slope = length(w), huge = ldexpq(1, 100);
-  out.row(M.xx, M.yy, M.zz, C);
-  out.row(M.xy, M.xz, M.yz, 1 / tau);
-  out.row(w, index);
-  out.row(sign, 1 / (larger(1, ldexpq(u0, 58)) * (slope * slope + C * size)),
-          C > 0 ? ldexpq(1, -26) / (C * size) : huge, ldexpq(1, -27) / size);
-  out.row(C > 0 ? huge : ldexpq(1, -26) / slope, 0, 0, 0);
+  T u0 = unitRoundoff(out.type), size = M.norm(), slope = length(w), huge = shifted(T(1), 100);
+  out.kind = kinds::quadric;
+  out.add(M.xx, M.yy, M.zz, C);
+  out.add(M.xy, M.xz, M.yz, 1 / tau);
+  out.add(w, index);
+  out.add(sign, 1 / (larger(T(1), shifted(u0, 58)) * (slope * slope + C * size)),
+          C > 0 ? shifted(T(1), -26) / (C * size) : huge, shifted(T(1), -27) / size);
+  out.add(C > 0 ? huge : shifted(T(1), -26) / slope, 0, 0, 0);
 }
 
-inline void packEye(const Quadric& quadric, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  QuadricForm Q = quadricForm(quadric);
-  V3 o = eye.origin;
-  V3 w = Q.M * o + Q.l;
-  f128 C = dot(o, w + Q.l) + Q.j;
+template <class T>
+void packEye(const Quadric& quadric, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  QuadricForm<T> Q = quadricForm<T>(quadric);
+  Vec3<T> o = eye.origin;
+  Vec3<T> w = Q.M * o + Q.l;
+  T C = dot(o, w + Q.l) + Q.j;
   // What is left of an eye on the surface is binary128's rounding; the second pass has the same rule.
-  f128 reach = length(o), scale = (Q.M.norm() * reach + 2 * length(Q.l)) * reach + fabsq(Q.j);
-  if (fabsq(C) <= slack() * scale) C = 0;
-  Symmetric M = Q.M * (eye.unit * eye.unit);
+  T reach = length(o), scale = (Q.M.norm() * reach + 2 * length(Q.l)) * reach + magnitude(Q.j);
+  out.counts(C, scale);
+  out.counts(length(w), Q.M.norm() * reach + length(Q.l));
+  if (magnitude(C) <= T(slack()) * scale) C = 0;
+  Symmetric<T> M = Q.M * (eye.unit * eye.unit);
   w = w * eye.unit;
   if (Q.M.norm() == 0) {  // a plane 2 l.p + j = 0
-    planeForms(Q.l, -C / 2 / eye.unit, eye, index, out.plane());
+    planeForms<T>(Q.l, -C / 2 / eye.unit, eye, index, out);
   } else if (C != 0 || !isZero(w)) {  // else the eye is a cone's apex: nothing but t = 0
-    quadricForms(M, w, C, eye, index, out.quadric(), false);
+    quadricForms<T>(M, w, C, eye, index, out, false);
   }
 }
 
 inline void packWorld(const Quadric& quadric, V3 origin, f128 index, RowWriter& out) {
-  QuadricForm Q = quadricForm(quadric);
+  QuadricForm<f128> Q = quadricForm(quadric);
   // The equation may be scaled as one likes: coefficients of 1e30 or 1e-40 would leave fp32.
   f128 k = 1 / powerOfTwo(Q.M.norm() > 0 ? Q.M.norm() : length(Q.l));
   V3 w = Q.M * origin + Q.l;
@@ -101,7 +107,7 @@ inline Cut smallestRoot(f128 A, f128 B, f128 C, f128 scaleA, f128 scaleB, f128 s
   return best;
 }
 
-inline Cut cutQuadric(const Symmetric& M, V3 l, f128 j, const RayQ& ray) {
+inline Cut cutQuadric(const Symmetric<f128>& M, V3 l, f128 j, const RayQ& ray) {
   V3 o = ray.origin, d = ray.direction;
   V3 w = M * o + l;
   f128 A = dot(d, M * d), B = dot(w, d), C = dot(o, w + l) + j;
@@ -112,12 +118,12 @@ inline Cut cutQuadric(const Symmetric& M, V3 l, f128 j, const RayQ& ray) {
 inline Ball ball(const Quadric&) { return {{0, 0, 0}, -1}; }
 
 inline Cut cut(const Quadric& quadric, const RayQ& ray) {
-  QuadricForm Q = quadricForm(quadric);
+  QuadricForm<f128> Q = quadricForm(quadric);
   return cutQuadric(Q.M, Q.l, Q.j, ray);
 }
 
 inline Surface surface(const Quadric& quadric, const RayQ& ray, f128 t) {
-  QuadricForm Q = quadricForm(quadric);
+  QuadricForm<f128> Q = quadricForm(quadric);
   V3 p = ray.origin + t * ray.direction;
   V3 gradient = Q.M * p + Q.l;
   f128 scale = Q.M.norm() * length(p) + length(Q.l);

@@ -4,23 +4,26 @@
 
 namespace solidcast {
 
-inline void packEye(const Sphere& sphere, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  V3 f = -eye.relative(sphere.center);
-  f128 r = sphere.radius / eye.unit;
-  f128 far = dot(f, f), C = far - r * r;
-  if (fabsq(C) <= slack() * far) C = 0;  // the eye is on the surface, as far as binary128 can tell
+template <class T>
+void packEye(const Sphere& sphere, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  Vec3<T> f = -eye.relative(sphere.center);
+  T r = sphere.radius / eye.unit;
+  T far = dot(f, f), C = far - r * r;
+  out.counts(C, far);
+  if (magnitude(C) <= T(slack()) * far) C = 0;  // the eye is on the surface, as far as binary128 can tell
   // Near the surface the numerator sqrt(q) - b cancels: the quadric's careful form does not.
-  f128 near = ldexpq(1, out.type() == RealType::f64 ? -20 : out.type() == RealType::df32 ? -12 : -4);
-  if (fabsq(C) < near * far) {
-    quadricForms({1, 1, 1, 0, 0, 0}, f, C, eye, index, out.quadric(), false);
+  T near = shifted(T(1), out.type == RealType::f64 ? -20 : out.type == RealType::df32 ? -12 : -4);
+  if (magnitude(C) < near * far) {
+    quadricForms<T>({1, 1, 1, 0, 0, 0}, f, C, eye, index, out, false);
     return;
   }
   // In this unit of length the error of q is bounded by DOUBT |d|^2: its scale is 1.
-  f128 u = unitRoundoff(out.type());
-  f128 sigma = 1 / sqrtq(larger(1, ldexpq(u, 57)) * (far + fabsq(C)));
+  T u = unitRoundoff(out.type);
+  T sigma = 1 / squareRoot(larger(T(1), shifted(u, 57)) * (far + magnitude(C)));
   C = C * sigma * sigma;
-  out.sphere().row(eye.toCamera(C < 0 ? -f : f) * sigma, C);
-  out.sphere().row(sigma / fabsq(C), (C < 0 ? -1 : 1) / (sigma * r), index, 0);
+  out.kind = kinds::sphere;
+  out.add(eye.toCamera(C < 0 ? -f : f) * sigma, C);
+  out.add(sigma / magnitude(C), (C < 0 ? -1 : 1) / (sigma * r), index, 0);
 }
 
 inline void packWorld(const Sphere& sphere, V3 origin, f128 index, RowWriter& out) {

@@ -7,36 +7,49 @@
 namespace solidcast {
 
 /// v1 + beta e1 + gamma e2
+template <class T>
 struct Span {
-  V3 v1, e1, e2;
+  Vec3<T> v1, e1, e2;
 };
 
-inline Span span(const Triangle& t) { return {V3(t.v1), V3(t.v2) - V3(t.v1), V3(t.v3) - V3(t.v1)}; }
-
-/// Rows (m, k) (U, index) (V, weight of s), and (m - U - V, -) for a triangle, (m - U, -) (m - V, -) for a quad.
-inline void spanForms(const Span& s, bool quad, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  V3 f = (s.v1 - eye.origin) / eye.unit, e1 = s.e1 / eye.unit, e2 = s.e2 / eye.unit;
-  V3 n = cross(e1, e2);
-  f128 num = dot(n, f), n2 = dot(n, n);
-  if (num == 0) return;  // the eye is in its plane
-  V3 m = n / num;
-  V3 U = (num * cross(e2, n) - dot(cross(f, e2), n) * n) / (n2 * num);
-  V3 V = (num * cross(n, e1) - dot(cross(e1, f), n) * n) / (n2 * num);
-  RowWriter& rows = quad ? out.quad() : out.triangle();
-  auto edge = [&](V3 form) { return eye.toCamera(normalized(form)); };
-  rows.row(eye.toCamera(m), -num / length(n));
-  rows.row(edge(U), index);
-  rows.row(edge(V), ldexpq(1, -26) / length(m));
-  if (quad) {
-    rows.row(edge(m - U), 0);
-    rows.row(edge(m - V), 0);
-  } else {
-    rows.row(edge(m - U - V), 0);
-  }
-  out.mayGraze(num / length(n), length(f) + length(e1) + length(e2));
+template <class T = f128>
+Span<T> span(const Triangle& t) {
+  Vec3<T> v1(t.v1);
+  return {v1, Vec3<T>(t.v2) - v1, Vec3<T>(t.v3) - v1};
 }
 
-inline void spanWorld(const Span& s, V3 origin, f128 index, RowWriter& out) {
+/// Rows (m, k) (U, index) (V, weight of s), and (m - U - V, -) for a triangle, (m - U, -) (m - V, -) for a quad. The zeros
+/// of each edge's form are the plane through the eye and that edge, so that it is a cross product of the edge and one
+/// of its points, over num.
+template <class T>
+void spanForms(const Span<T>& s, bool quad, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  Vec3<T> f = (s.v1 - eye.origin) / eye.unit, e1 = s.e1 / eye.unit, e2 = s.e2 / eye.unit;
+  Vec3<T> n = cross(e1, e2);
+  T num = dot(n, f), area = length(n), l1 = length(e1), l2 = length(e2), reach = length(f);
+  out.counts(area, l1 * l2);
+  out.scales(num, area * reach);
+  if (num == 0) return;  // the eye is in its plane
+  Vec3<T> m = n / num;
+  auto edge = [&](Vec3<T> along, Vec3<T> point, T terms) {
+    Vec3<T> form = cross(along, point);
+    T size = length(form);
+    out.counts(size, terms);
+    return eye.toCamera(form) * ((num < 0 ? T(-1) : T(1)) / size);
+  };
+  out.kind = quad ? kinds::quad : kinds::triangle;
+  out.add(eye.toCamera(m), -num / area);
+  out.add(edge(e2, f, l2 * reach), index);
+  out.add(edge(f, e1, l1 * reach), shifted(T(1), -26) / length(m));
+  if (quad) {
+    out.add(edge(f + e1, e2, l2 * (reach + l1)), 0);
+    out.add(edge(e1, f + e2, l1 * (reach + l2)), 0);
+  } else {
+    out.add(edge(f + e1, e2 - e1, (reach + l1) * (l1 + l2)), 0);
+  }
+  out.mayGraze(num / area, reach + l1 + l2);
+}
+
+inline void spanWorld(const Span<f128>& s, V3 origin, f128 index, RowWriter& out) {
   out.row(s.v1 - origin, index);
   out.row(s.e1, 0);
   out.row(s.e2, 0);
@@ -55,7 +68,7 @@ struct SpanCut {
   }
 };
 
-inline SpanCut cutSpan(const Span& s, const RayQ& ray) {
+inline SpanCut cutSpan(const Span<f128>& s, const RayQ& ray) {
   V3 n = cross(s.e1, s.e2);
   SpanCut c;
   c.plane = cutPlane(n, s.v1, ray);
@@ -70,15 +83,18 @@ inline SpanCut cutSpan(const Span& s, const RayQ& ray) {
   return c;
 }
 
-inline void packEye(const Triangle& triangle, const EyeFrame& eye, f128 index, const EyeWriters& out) {
-  spanForms(span(triangle), false, eye, index, out);
+template <class T>
+void packEye(const Triangle& triangle, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  spanForms(span<T>(triangle), false, eye, index, out);
 }
 
 inline void packWorld(const Triangle& triangle, V3 origin, f128 index, RowWriter& out) {
   spanWorld(span(triangle), origin, index, out);
 }
 
-inline Outline outline(const Triangle& t) { return {{t.v1, t.v2, t.v3}, 3}; }
+inline std::array<Triple, 3> outline(const Triangle& t, const Triple& origin) {
+  return {difference(t.v1, origin), difference(t.v2, origin), difference(t.v3, origin)};
+}
 
 inline Ball ball(const Triangle& t) { return {t.v1, std::max(distance(t.v1, t.v2), distance(t.v1, t.v3))}; }
 
@@ -88,7 +104,7 @@ inline Cut cut(const Triangle& triangle, const RayQ& ray) {
 }
 
 inline Surface surface(const Triangle& triangle, const RayQ& ray, f128) {
-  Span s = span(triangle);
+  Span<f128> s = span(triangle);
   SpanCut c = cutSpan(s, ray);
   return {normalized(cross(s.e1, s.e2)), {1 - c.beta - c.gamma, c.beta, c.gamma}};
 }

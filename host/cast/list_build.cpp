@@ -1,0 +1,273 @@
+#include "host/cast/list_build.h"
+
+#include <algorithm>
+#include <cstring>
+#include <thread>
+
+#include "host/cast/solids/all.h"
+
+namespace solidcast {
+namespace {
+
+constexpr std::uint32_t eyeRowsOf[kindCount] = {
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) EYE_ROWS,
+#include "shaders/solids.def"
+#undef SOLID
+};
+
+/// Solids in more tiles than this go to the wide ones.
+constexpr int mostTiles = 256;
+enum Level : std::size_t { narrow, wide };
+
+void onAllThreads(std::size_t threads, const auto& work) {
+  std::vector<std::thread> helpers;
+  for (std::size_t t = 1; t < threads; ++t) helpers.emplace_back([&work, t] { work(t); });
+  work(std::size_t{0});
+  for (std::thread& helper : helpers) helper.join();
+}
+
+/// Bytes at the end of which more are put, without being cleared first.
+class Arena {
+ public:
+  std::byte* add(std::size_t bytes) {
+    if (used_ + bytes > room_) {
+      room_ = std::max<std::size_t>({2 * room_, used_ + bytes, std::size_t{1} << 16});
+      auto bigger = std::make_unique_for_overwrite<std::byte[]>(room_);
+      std::memcpy(bigger.get(), data_.get(), used_);
+      data_ = std::move(bigger);
+    }
+    std::byte* to = data_.get() + used_;
+    used_ += bytes;
+    return to;
+  }
+  void clear() { used_ = 0; }
+  std::span<const std::byte> bytes() const { return {data_.get(), used_}; }
+
+ private:
+  std::unique_ptr<std::byte[]> data_ = std::make_unique_for_overwrite<std::byte[]>(16);
+  std::size_t room_ = 16, used_ = 0;
+};
+
+struct Place {  // tiles from and to, both included
+  std::uint16_t fromX, fromY, toX, toY;
+};
+
+}  // namespace
+
+/// What one thread found in its share of the solids, in their order.
+struct ListBuilder::Part {
+  std::array<std::array<Arena, kindCount>, 2> found;                       // Place and record, one after the other
+  std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> tiles;  // entries by tile; then where the next goes
+  bool grazing = false, boxOnFace = false;
+  std::size_t seen = 0;
+
+  void start() {
+    grazing = boxOnFace = false;
+    seen = 0;
+    for (auto& level : found)
+      for (Arena& arena : level) arena.clear();
+    for (auto& level : tiles)
+      for (auto& counts : level) counts.clear();
+  }
+
+  template <class T>
+  void collect(const World& world, std::size_t from, std::size_t to, RealType type, const Silhouette& silhouette,
+               const EyeFrame& eye, const ListGrid& grid) {
+    const Frame<T> frame(eye);
+    for (std::size_t i = from; i < to; ++i)
+      std::visit(
+          [&](const auto& solid) {
+            Place place;
+            Level level;
+            if (!findPlace(silhouette.rectangle(solid), grid, place, level)) return;
+            EyeRecord<T> record(type);
+            packEye(solid, frame, T(i), record);
+            if (record.poor) {
+              EyeRecord<f128> better(type);
+              packEye(solid, eye, f128(i), better);
+              add(better, place, level, grid);
+            } else {
+              add(record, place, level, grid);
+            }
+            if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
+              boxOnFace = boxOnFace || eyeOnFacePlane(solid, frame);
+          },
+          world.solids[i].shape);
+  }
+
+  template <class T>
+  void add(const EyeRecord<T>& record, const Place& place, Level level, const ListGrid& grid) {
+    if (record.kind < 0) return;
+    const auto kind = static_cast<std::size_t>(record.kind);
+    ++seen;
+    grazing = grazing || record.grazing;
+    const std::size_t rowSize = rowBytes(record.type);
+    std::byte* to = found[level][kind].add(sizeof place + rowSize * eyeRowsOf[kind]);
+    std::memcpy(to, &place, sizeof place);
+    for (int r = 0; r < record.rows; ++r) writeRow(to + sizeof place + rowSize * r, record.type, record.row[r]);
+    auto& counts = tiles[level][kind];
+    const std::size_t across = level == wide ? grid.wideAcross() : grid.across;
+    if (counts.empty()) counts.assign(across * (level == wide ? grid.wideDown() : grid.down), 0);
+    for (std::size_t y = place.fromY; y <= place.toY; ++y)
+      for (std::size_t x = place.fromX; x <= place.toX; ++x) ++counts[y * across + x];
+  }
+
+  /// Pixel i is seen at i + 0.5, so that [a, b] holds centres from ceil(a - 0.5) to floor(b - 0.5). False: none.
+  static bool findPlace(const Rectangle& r, const ListGrid& grid, Place& place, Level& level) {
+    int x0 = 0, y0 = 0, x1 = grid.region.width - 1, y1 = grid.region.height - 1;
+    if (!r.everywhere) {
+      const auto clip = [](const Interval& i, int first, int& low, int& high) {
+        // In this order NaN is as far as possible.
+        const double from = std::max(0.0, i.from - 0.5 - first), to = std::min(double(high), i.to - 0.5 - first);
+        if (to < from) return false;
+        low = static_cast<int>(from);
+        low += low < from;
+        high = static_cast<int>(to);
+        return low <= high;
+      };
+      if (!clip(r.x, grid.region.x, x0, x1) || !clip(r.y, grid.region.y, y0, y1)) return false;
+    }
+    x0 /= ListGrid::tile, x1 /= ListGrid::tile, y0 /= ListGrid::tile, y1 /= ListGrid::tile;
+    level = std::int64_t{x1 - x0 + 1} * (y1 - y0 + 1) > mostTiles ? wide : narrow;
+    if (level == wide) x0 /= grid.wide, x1 /= grid.wide, y0 /= grid.wide, y1 /= grid.wide;
+    place = {static_cast<std::uint16_t>(x0), static_cast<std::uint16_t>(y0), static_cast<std::uint16_t>(x1),
+             static_cast<std::uint16_t>(y1)};
+    return true;
+  }
+
+  /// Copies every record to its tiles; tiles[][] says where each tile's next one goes.
+  void write(std::byte* rows, std::size_t rowSize, const ListGrid& grid) {
+    for (const Level level : {narrow, wide})
+      for (std::size_t kind = 0; kind < kindCount; ++kind) {
+        const std::size_t record = rowSize * eyeRowsOf[kind], across = level == wide ? grid.wideAcross() : grid.across;
+        const auto bytes = found[level][kind].bytes();
+        std::uint32_t* next = tiles[level][kind].data();
+        for (const std::byte* at = bytes.data(); at != bytes.data() + bytes.size(); at += sizeof(Place) + record) {
+          Place place;
+          std::memcpy(&place, at, sizeof place);
+          for (std::size_t y = place.fromY; y <= place.toY; ++y)
+            for (std::size_t x = place.fromX; x <= place.toX; ++x) {
+              std::uint32_t& row = next[y * across + x];
+              std::memcpy(rows + row * rowSize, at + sizeof place, record);
+              row += eyeRowsOf[kind];
+            }
+        }
+      }
+  }
+};
+
+ListBuilder::ListBuilder() {
+  for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t)
+    parts_.push_back(std::make_unique<Part>());
+}
+ListBuilder::~ListBuilder() = default;
+
+void ListBuilder::collect(const Scene& scene, RealType type, const Silhouette& silhouette, const ListGrid& grid) {
+  grid_ = grid, type_ = type;
+  const EyeFrame eye = eyeFrame(scene, type);
+  const std::size_t solids = scene.world.solids.size(), threads = solids < 256 ? 1 : parts_.size();
+  for (auto& part : parts_) part->start();
+  onAllThreads(threads, [&](std::size_t t) {
+    const std::size_t from = solids * t / threads, to = solids * (t + 1) / threads;
+    if (type == RealType::f32) parts_[t]->collect<double>(scene.world, from, to, type, silhouette, eye, grid);
+    else parts_[t]->collect<long double>(scene.world, from, to, type, silhouette, eye, grid);
+  });
+  grazing_ = boxOnFace_ = false;
+  seen_ = 0;
+  for (const auto& part : parts_)
+    grazing_ = grazing_ || part->grazing, boxOnFace_ = boxOnFace_ || part->boxOnFace, seen_ += part->seen;
+  layOut();
+  sortTiles();
+}
+
+/// Kind by kind and tile by tile, each tile's entries in the order of the solids.
+void ListBuilder::layOut() {
+  kinds_ = {};
+  wideOnes_ = false;
+  std::size_t row = 0;
+  const std::size_t tiles = static_cast<std::size_t>(grid_.across) * static_cast<std::size_t>(grid_.down);
+  total_.assign(tiles, 0);
+  for (const Level level : {wide, narrow})
+    for (std::size_t kind = 0; kind < kindCount; ++kind) {
+      auto& first = first_[level][kind];
+      auto& count = count_[level][kind];
+      first.clear(), count.clear();
+      std::vector<std::uint32_t*> counts;
+      std::size_t size = 0;
+      for (const auto& part : parts_)
+        if (auto& of = part->tiles[level][kind]; !of.empty()) counts.push_back(of.data()), size = of.size();
+      if (counts.empty()) continue;
+      kinds_[kind] = true;
+      wideOnes_ = wideOnes_ || level == wide;
+      first.resize(size), count.resize(size);
+      for (std::size_t tile = 0; tile < size; ++tile) {
+        first[tile] = static_cast<std::uint32_t>(row);
+        std::uint32_t here = 0;
+        for (std::uint32_t* of : counts) {
+          const std::uint32_t entries = of[tile];
+          of[tile] = static_cast<std::uint32_t>(row);
+          row += std::size_t{entries} * eyeRowsOf[kind];
+          here += entries;
+        }
+        count[tile] = here;
+        if (level == narrow) total_[tile] += here;
+      }
+      if (level == wide)
+        for (std::size_t tile = 0, y = 0; y < static_cast<std::size_t>(grid_.down); ++y)
+          for (std::size_t x = 0; x < static_cast<std::size_t>(grid_.across); ++x, ++tile)
+            total_[tile] += count[y / grid_.wide * grid_.wideAcross() + x / grid_.wide];
+    }
+  rows_ = row;
+}
+
+/// Longest first, so that the lanes of a vector end together and the last workgroups are short.
+void ListBuilder::sortTiles() {
+  constexpr std::uint32_t most = 4095;
+  std::vector<std::uint32_t> start(most + 2, 0);
+  for (const std::uint32_t entries : total_) ++start[most - std::min(entries, most) + 1];
+  for (std::size_t i = 0; i <= most; ++i) start[i + 1] += start[i];
+  listed_ = start[most];
+  order_.resize(total_.size());
+  for (std::uint32_t tile = 0; tile < total_.size(); ++tile)
+    order_[start[most - std::min(total_[tile], most)]++] = tile;
+  const auto longer = [&](std::uint32_t a, std::uint32_t b) { return total_[a] > total_[b]; };
+  std::stable_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(start[0]), longer);
+}
+
+std::uint32_t ListBuilder::longest() const { return order_.empty() ? 0 : total_[order_[0]]; }
+
+std::size_t ListBuilder::tilesLongerThan(std::uint32_t entries) const {
+  const auto longer = [&](std::uint32_t tile, std::uint32_t n) { return total_[tile] > n; };
+  return static_cast<std::size_t>(std::lower_bound(order_.begin(), order_.end(), entries, longer) - order_.begin());
+}
+
+void ListBuilder::write(std::span<std::byte> rows, std::span<std::byte> lanes, std::size_t laneCount,
+                        const std::array<bool, kindCount>& slots) {
+  std::size_t laneBytes = sizeof(ListLane);
+  for (const bool slot : slots) laneBytes += slot ? sizeof(ListSpan) : 0;
+  const auto at = [](const std::vector<std::uint32_t>& of, std::size_t i) { return of.empty() ? 0 : of[i]; };
+  const std::size_t threads = rows_ < 4096 ? 1 : parts_.size();
+  onAllThreads(threads, [&](std::size_t t) {
+    for (std::size_t lane = laneCount * t / threads; lane < laneCount * (t + 1) / threads; ++lane) {
+      const std::size_t tile = order_[lane], x = tile % grid_.across, y = tile / grid_.across;
+      const std::size_t wideTile = y / grid_.wide * grid_.wideAcross() + x / grid_.wide;
+      std::byte* to = lanes.data() + lane * laneBytes;
+      const ListLane head{
+          static_cast<std::uint32_t>(x * ListGrid::tile), static_cast<std::uint32_t>(y * ListGrid::tile), {}};
+      std::memcpy(to, &head, sizeof head);
+      to += sizeof head;
+      for (std::size_t kind = 0; kind < kindCount; ++kind) {
+        if (!slots[kind]) continue;
+        const std::uint32_t wideCount = at(count_[wide][kind], wideTile);
+        const ListSpan span{at(first_[wide][kind], wideTile), wideCount, at(first_[narrow][kind], tile),
+                            wideCount + at(count_[narrow][kind], tile)};
+        std::memcpy(to, &span, sizeof span);
+        to += sizeof span;
+      }
+    }
+    for (std::size_t part = t; part < parts_.size(); part += threads)
+      parts_[part]->write(rows.data(), rowBytes(type_), grid_);
+  });
+}
+
+}  // namespace solidcast

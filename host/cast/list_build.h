@@ -1,0 +1,79 @@
+// The lists of shaders/lists.comp: for each tile of the screen the records of the solids that can be seen in it, laid
+// out in the order they are walked. Most of a large picture's time is spent here, so the solids are gone over once, on
+// all cores: seen or not, record, tiles; and a second time only over what is seen, to copy its record to its tiles.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "host/cast/records.h"
+#include "host/cast/silhouette.h"
+#include "host/image/band.h"
+#include "host/scene/world.h"
+
+namespace solidcast {
+
+/// Part of the image in tiles, and in wide tiles of `wide` x `wide` of them, for solids that would be in too many.
+struct ListGrid {
+  static constexpr int tile = 4;  // pixels a side
+  Crop region;                    // in pixels of the whole image
+  int across = 0, down = 0;       // tiles; the planes' padding is covered as well
+  int wide = 16;
+  int wideAcross() const { return (across + wide - 1) / wide; }
+  int wideDown() const { return (down + wide - 1) / wide; }
+};
+
+/// By lane of a dispatch, as lists.comp reads it.
+struct ListLane {
+  std::uint32_t x, y, unused[2];
+};
+struct ListSpan {
+  std::uint32_t wideFirst, wideCount, first, count;  // rows; `count` is of both
+};
+
+class ListBuilder {
+ public:
+  ListBuilder();
+  ~ListBuilder();
+
+  /// Which solids are seen where, and their records. The records are correct to 2^-3 of the type's rounding
+  /// (docs/numerics.md).
+  void collect(const Scene& scene, RealType type, const Silhouette& silhouette, const ListGrid& grid);
+
+  // What collect() found:
+  std::array<bool, kindCount> kinds() const { return kinds_; }
+  bool wideOnes() const { return wideOnes_; }  // some solids are in wide tiles
+  bool grazing() const { return grazing_; }
+  bool boxOnFace() const { return boxOnFace_; }
+  std::size_t rows() const { return rows_; }  // that the lists take
+  std::size_t seen() const { return seen_; }  // solids
+  /// Tiles with solids, longest lists first, then the others. A dispatch may go beyond listedTiles(), never beyond all.
+  std::span<const std::uint32_t> tiles() const { return order_; }
+  std::size_t listedTiles() const { return listed_; }
+  /// Tiles whose lists are longer than this.
+  std::size_t tilesLongerThan(std::uint32_t entries) const;
+  std::uint32_t longest() const;
+
+  /// The rows, and for the first `lanes` of tiles() a ListLane and a ListSpan for each of `slots` (kinds in order).
+  void write(std::span<std::byte> rows, std::span<std::byte> lanes, std::size_t laneCount,
+             const std::array<bool, kindCount>& slots);
+
+ private:
+  struct Part;  // a thread's share of the solids
+  void layOut();
+  void sortTiles();
+
+  ListGrid grid_;
+  RealType type_{};
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::array<bool, kindCount> kinds_{};
+  bool grazing_ = false, boxOnFace_ = false, wideOnes_ = false;
+  std::size_t rows_ = 0, seen_ = 0, listed_ = 0;
+  // [narrow 0 or wide 1][kind]: by tile, and for the wide ones the count beside
+  std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> first_, count_;
+  std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles by falling entries
+};
+
+}  // namespace solidcast

@@ -1,0 +1,158 @@
+#include "host/cast/list_search.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "host/cast/stopwatch.h"
+#include "host/error.h"
+
+namespace solidcast {
+namespace {
+
+// lists.comp: Portion
+struct ListPush {
+  std::uint32_t wholeWidth, wholeHeight, firstX, firstY, rows, stride, sampleX, sampleY, from, to, last, listTexels;
+};
+
+constexpr std::uint32_t groupLanes = 16;  // lists.comp: local_size_x
+/// Entries that a dispatch walks: llvmpipe stops all loops of an invocation after 65535 rounds without a word.
+constexpr std::uint32_t mostEntries = 65000;
+constexpr std::size_t stateBytes = 40 * 16;  // lists.comp: State, by tile, at most
+
+std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
+
+/// Keeps the buffer while it is large enough; its contents are not kept.
+void reserve(gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, gpu::BufferUse use) {
+  if (buffer.bytes().size() >= std::max<std::size_t>(bytes, 16)) return;
+  buffer = {};
+  buffer = device.makeBuffer(std::max<std::size_t>(bytes + bytes / 8, 64) / 16 * 16, use);
+}
+
+}  // namespace
+
+ListSearch::ListSearch(const PassJob& job, const Scene& scene) : job_(job), scene_(&scene), program_(job.program) {
+  program_.job = Job::lists;
+  job_.stats.module += (job_.stats.module.empty() ? "" : ", ") + program_.moduleName();
+  gpu::CompiledModule module = programModule(program_, job_.options);
+  job_.stats.files.insert(job_.stats.files.end(), module.files.begin(), module.files.end());
+  spirv_ = std::move(module.spirv);
+  job_.stats.spirvBytes += spirv_.size() * 4;
+  setScene(scene);
+}
+
+void ListSearch::setScene(const Scene& scene) {
+  scene_ = &scene;
+  builtRow_ = -1;
+  Stopwatch flattening;
+  silhouette_.emplace(scene, job_.job.width, job_.job.height, job_.job.samples);
+  const View view =
+      viewRows(scene, eyeFrame(scene, program_.real), job_.job.width, job_.job.height, job_.samples, program_.real);
+  view_ = filledBuffer(job_.device, view.rows, gpu::BufferUse::uniform);
+  if (program_.camera == 1) angles_ = filledBuffer(job_.device, view.angles, gpu::BufferUse::storage);
+  viewRaws_ = static_cast<std::uint32_t>(view.raws);
+  job_.stats.flatten_ms += flattening.ms();
+}
+
+void ListSearch::prepare(const PassTarget& target, const Band& band) {
+  if (builtRow_ == band.firstRow) return;
+  builtRow_ = band.firstRow;
+  partRows_ = target.rows;
+  build(target, band, 0, target.rows);
+}
+
+/// Lists of the band's rows from `firstRow` on.
+void ListSearch::build(const PassTarget& target, const Band& band, int firstRow, int rows) {
+  Stopwatch flattening;
+  ListGrid grid;
+  grid.region = {job_.crop.x, job_.crop.y + band.firstRow + firstRow, band.width, std::min(rows, band.rows - firstRow)};
+  grid.across = target.stride / ListGrid::tile, grid.down = rows / ListGrid::tile;
+  while (std::int64_t{grid.wideAcross()} * grid.wideDown() > 256) grid.wide *= 2;
+  builder_.collect(*scene_, program_.real, *silhouette_, grid);
+  for (std::size_t k = 0; k < kindCount; ++k) kinds_[k] = kinds_[k] || builder_.kinds()[k];
+  const bool exact = program_.method == Method::exact;
+  grazing_ = grazing_ || (exact && builder_.grazing());
+  boxOnFace_ = boxOnFace_ || (exact && builder_.boxOnFace());
+  // Solids of one kind are walked in the order of their indices, but for the wide tiles' among them.
+  ties_ = ties_ || builder_.wideOnes() || std::count(kinds_.begin(), kinds_.end(), true) > 1;
+  portioned_ = portioned_ || builder_.longest() > mostEntries;
+
+  // Whole workgroups, filled up with tiles that have no solids; there are always enough of them.
+  lanes_ = (builder_.listedTiles() + groupLanes - 1) / groupLanes * groupLanes;
+  const std::size_t laneTexels = 1 + std::count(kinds_.begin(), kinds_.end(), true);
+  const std::size_t bytes = builder_.rows() * rowBytes(program_.real);
+  reserve(job_.device, records_, bytes, gpu::BufferUse::texels);
+  reserve(job_.device, lists_, lanes_ * laneTexels * 16, gpu::BufferUse::texels);
+  reserve(job_.device, state_, portioned_ ? lanes_ * stateBytes : 16, gpu::BufferUse::storage);
+  builder_.write(records_.bytes(), lists_.bytes(), lanes_, kinds_);
+  job_.stats.flatten_ms += flattening.ms();
+  if (!told_)
+    job_.stats.plan.push_back("lists of " + std::to_string(builder_.seen()) + " solids for " +
+                              std::to_string(builder_.listedTiles()) + " tiles of 4x4 pixels, up to " +
+                              std::to_string(builder_.longest()) + " in one: " + std::to_string(bytes) + " bytes");
+  told_ = true;
+  Stopwatch making;
+  makePipeline();
+  job_.stats.shader_ms += making.ms();
+}
+
+void ListSearch::makePipeline() {
+  gpu::Specialisation constants;
+  for (std::uint32_t kind = 0; kind < kindCount; ++kind) constants[kind] = kinds_[kind];
+  constants[viewRaws] = viewRaws_;
+  constants[boxFacePlane] = boxOnFace_;
+  constants[someGraze] = grazing_;
+  constants[portioned] = portioned_;
+  constants[integratorNumber] = static_cast<std::uint32_t>(scene_->integrator.index());
+  constants[twoSided] = job_.job.twoSided;
+  constants[samples] = u(job_.samples);
+  constants[wanted] = job_.wanted;
+  constants[doubt] = bits(doubtOf(program_));
+  constants[hitsInDoubt] = false;
+  constants[someTie] = ties_;
+  if (pipeline_ && constants == constants_) return;
+  constants_ = std::move(constants);
+  pipeline_.emplace(job_.device.makePipeline(spirv_, constants_));
+  ++job_.stats.pipelines;
+  job_.stats.specialisedSpirvBytes += pipeline_->spirvBytes();
+}
+
+/// Tiles without solids are not dispatched: the host says that nothing is seen there.
+void ListSearch::fillUnlisted(const PassTarget& target, int firstRow) const {
+  std::uint32_t* plane = target.image.as<std::uint32_t>().data();
+  const std::size_t stride = static_cast<std::size_t>(target.stride), words = stride * u(target.rows);
+  const std::size_t across = stride / ListGrid::tile;
+  const auto fill = [&](int planes, std::uint32_t value) {
+    for (; planes > 0; --planes, plane += words)
+      for (const std::uint32_t tile : builder_.tiles().subspan(lanes_)) {
+        const std::size_t y = u(firstRow) + tile / across * ListGrid::tile, x = tile % across * ListGrid::tile;
+        for (std::size_t row = y; row < y + ListGrid::tile; ++row)
+          std::fill_n(plane + row * stride + x, ListGrid::tile, value);
+      }
+  };
+  if (job_.wanted & RGB8) fill(1, 0);
+  if (job_.wanted & RADIANCE) fill(3, 0);
+  if (job_.wanted & DISTANCE) fill(1, std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()));
+  if (job_.wanted & SOLID) fill(1, ~0u);
+}
+
+double ListSearch::dispatch(const PassTarget& target, const Band& band, int sample) {
+  if (sample == 0) fillUnlisted(target, 0);
+  const int n = job_.samples;
+  std::vector<ListPush> pushes;
+  const auto texels = static_cast<std::uint32_t>(1 + std::count(kinds_.begin(), kinds_.end(), true));
+  for (std::uint32_t from = 0; from == 0 || from < builder_.longest(); from += mostEntries)
+    pushes.push_back({u(job_.job.width), u(job_.job.height), u(job_.crop.x), u(job_.crop.y + band.firstRow),
+                      u(target.rows), u(target.stride), u(sample % n), u(sample / n), from, from + mostEntries,
+                      from + mostEntries >= builder_.longest(), texels});
+  const std::vector<const gpu::Buffer*> bound = {&records_,     &lists_,  &view_, &target.image,
+                                                 target.doubts, &angles_, &state_};
+  std::vector<gpu::Dispatch> dispatches;
+  for (const ListPush& push : pushes)
+    dispatches.push_back({&*pipeline_,
+                          bound,
+                          std::as_bytes(std::span(&push, 1)),
+                          {static_cast<std::uint32_t>(lanes_) / groupLanes, 1, 1}});
+  return lanes_ == 0 ? 0 : job_.device.run(dispatches);
+}
+
+}  // namespace solidcast

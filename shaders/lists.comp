@@ -1,0 +1,100 @@
+#version 450
+// Primary rays by lists: an invocation owns a tile of 4x4 pixels and walks the tile's own lists of solids, so that one
+// load of a record serves sixteen rays. The host makes the lists (host/cast/list_build.h): a list a kind, and of each
+// kind two, the solids of the wide tile that this one lies in (they are seen large) and its own.
+//
+// Compiled in variants: METHOD 1 fast, 2 exact; ARITHMETIC 0, 1; CAMERA 0, 1 (shaders/CMakeLists.txt).
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+
+#if METHOD == 2
+#define EXACT
+#endif
+#define FREE 0
+#define EYE 1
+#define WORLD 0
+#define HITS 0
+#define STORAGE 2
+
+#include "search.glsl"
+
+layout(local_size_x = 16) in;
+
+layout(push_constant) uniform Portion {
+  uint wholeWidth, wholeHeight;  // of the whole image, in pixels
+  uint firstX, firstY;           // of this band, in the whole image
+  uint rows, stride;             // of this band's planes (stride in words)
+  uint sampleX, sampleY;         // which sample of every pixel
+  uint from, to;                 // PORTIONED: the part of each tile's entries, over all kinds, that is walked now
+  uint last;                     // PORTIONED: nothing comes after it
+  uint listTexels;               // of `lists` by invocation
+} portion;
+
+#include "picture.glsl"
+
+layout(constant_id = 34) const bool PORTIONED = false;
+
+// By invocation: (x, y in the band, -, -), then for each kind of the scene
+// (first row of the wide tile's solids, how many, first row of its own, how many of both).
+layout(set = 0, binding = 1) uniform usamplerBuffer lists;
+
+// PORTIONED: what a pixel has found so far.
+layout(set = 0, binding = 6, std430) buffer State { Best state[]; };
+
+#define RAYS 16
+
+void main() {
+  int at = int(gl_GlobalInvocationID.x) * int(portion.listTexels);
+  uvec4 tile = texelFetch(lists, at);
+
+  EyeRay ray[RAYS];
+  Best best[RAYS];
+  UNROLL for (int k = 0; k < RAYS; ++k) {
+    uint column = (portion.firstX + tile.x + uint(k % 4)) * SAMPLES + portion.sampleX;
+    uint row = (portion.firstY + tile.y + uint(k / 4)) * SAMPLES + portion.sampleY;
+    ray[k].direction = cameraRay(column, row).direction;
+    ray[k].squared = linear(ray[k].direction, ray[k].direction);
+    if (BOX_COUNT > 0u) {
+      ray[k].world = combine(ray[k].direction.x, ray[k].direction.y, ray[k].direction.z);
+    } else {
+      ray[k].world = ray[k].direction;
+    }
+    best[k] = noHit();
+    if (PORTIONED) {
+      if (portion.from > 0u) best[k] = state[gl_GlobalInvocationID.x * RAYS + uint(k)];
+    }
+  }
+
+  uint done = 0u;  // entries of the kinds before
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS)                                    \
+  if (KIND##_COUNT > 0u) {                                                                       \
+    uvec4 list = texelFetch(lists, ++at);                                                        \
+    uint i = 0u, end = list.w;                                                                   \
+    if (PORTIONED) {                                                                             \
+      i = min(max(portion.from, done) - done, list.w);                                           \
+      end = min(max(portion.to, done) - done, list.w);                                           \
+      done += list.w;                                                                            \
+    }                                                                                            \
+    uint entry = i < list.y ? list.x + i * EYE_ROWS : list.z + (i - list.y) * EYE_ROWS;          \
+    while (i < end) {                                                                            \
+      entry = i == list.y ? list.z : entry;                                                      \
+      UNROLL for (int k = 0; k < RAYS; ++k) kind##_eye(entry, ray[k], best[k]);                  \
+      entry += EYE_ROWS;                                                                         \
+      ++i;                                                                                       \
+    }                                                                                            \
+  }
+#include "solids.def"
+#undef SOLID
+
+  if (PORTIONED) {
+    if (portion.last == 0u) {
+      UNROLL for (int k = 0; k < RAYS; ++k) state[gl_GlobalInvocationID.x * RAYS + uint(k)] = best[k];
+      return;
+    }
+  }
+  UNROLL for (int y = 0; y < 4; ++y) {
+    Result result[STORED];
+    UNROLL for (int x = 0; x < 4; ++x) result[x] = resultOf(best[4 * y + x], ray[4 * y + x].squared);
+    storeRow((tile.y + uint(y)) * portion.stride + tile.x, result);
+  }
+}
