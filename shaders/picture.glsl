@@ -104,9 +104,10 @@ Result resultOf(Best best, real squared) {
   Result result;
   // The first value stored has to depend on the whole search, index included where it is wanted.
   result.hit = (WANTED & SOLID_INDEX) != 0u ? atLeast(best.index, number(0.0)) : less(number(0.0), best.s);
-  result.distance = toFloat(mul(quotient(root(squared), best.s), viewRow(0u).z));
-  precise float cosine = toFloat(best.cosine) / sqrt(toFloat(squared));
-  result.cosine = cosine;
+  real length = root(squared);
+  result.distance = toFloat(mul(quotient(length, best.s), viewRow(0u).z));
+  // Rounded once, as the second pass rounds it: which rays are in doubt must not show.
+  result.cosine = toFloat(quotient(best.cosine, length));
   result.index = toFloat(best.index);
   result.doubtful = false;
 #ifdef EXACT

@@ -70,27 +70,17 @@ struct ListBuilder::Part {
       for (auto& counts : level) counts.clear();
   }
 
-  template <class T>
   void collect(const World& world, std::size_t from, std::size_t to, RealType type, const Silhouette& silhouette,
-               const EyeFrame& eye, const ListGrid& grid) {
-    const Frame<T> frame(eye);
+               const EyeFrames& eye, const ListGrid& grid) {
     for (std::size_t i = from; i < to; ++i)
       std::visit(
           [&](const auto& solid) {
             Place place;
             Level level;
             if (!findPlace(silhouette.rectangle(solid), grid, place, level)) return;
-            EyeRecord<T> record(type);
-            packEye(solid, frame, T(i), record);
-            if (record.poor) {
-              EyeRecord<f128> better(type);
-              packEye(solid, eye, f128(i), better);
-              add(better, place, level, grid);
-            } else {
-              add(record, place, level, grid);
-            }
+            packed(solid, eye, i, type, [&](const auto& record) { add(record, place, level, grid); });
             if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
-              boxOnFace = boxOnFace || eyeOnFacePlane(solid, frame);
+              boxOnFace = boxOnFace || eyeOnFacePlane(solid, eye.extended);
           },
           world.solids[i].shape);
   }
@@ -164,13 +154,12 @@ ListBuilder::~ListBuilder() = default;
 
 void ListBuilder::collect(const Scene& scene, RealType type, const Silhouette& silhouette, const ListGrid& grid) {
   grid_ = grid, type_ = type;
-  const EyeFrame eye = eyeFrame(scene, type);
+  const EyeFrames eye(eyeFrame(scene, type));
   const std::size_t solids = scene.world.solids.size(), threads = solids < 256 ? 1 : parts_.size();
   for (auto& part : parts_) part->start();
   onAllThreads(threads, [&](std::size_t t) {
     const std::size_t from = solids * t / threads, to = solids * (t + 1) / threads;
-    if (type == RealType::f32) parts_[t]->collect<double>(scene.world, from, to, type, silhouette, eye, grid);
-    else parts_[t]->collect<long double>(scene.world, from, to, type, silhouette, eye, grid);
+    parts_[t]->collect(scene.world, from, to, type, silhouette, eye, grid);
   });
   grazing_ = boxOnFace_ = false;
   seen_ = 0;

@@ -47,23 +47,31 @@ void Pass::secondPass(Band& band) {
   if (doubts == 0 && !surfaces_) return;
   if (!second_) second_.emplace(scene_->world);
   PixelRays rays(*scene_, job_.width, job_.height, samples_);
-  for (std::size_t sample = 0; sample < doubtful_.size(); ++sample) {
-    const auto& list = doubtful_[sample];
-    inParallel(list.size(), [&](std::size_t i) {
-      std::size_t pixel = list[i];
+  // A pixel with a doubtful sample gets all of its samples anew, so that their sum is rounded in the same order whichever
+  // of them was in doubt: that differs from plan to plan.
+  std::vector<std::uint32_t> pixels;
+  for (const auto& list : doubtful_) pixels.insert(pixels.end(), list.begin(), list.end());
+  std::sort(pixels.begin(), pixels.end());
+  pixels.erase(std::unique(pixels.begin(), pixels.end()), pixels.end());
+  inParallel(pixels.size(), [&](std::size_t i) {
+    const std::size_t pixel = pixels[i];
+    Light sum;
+    ExactHit hit;
+    for (std::size_t sample = 0; sample < doubtful_.size(); ++sample) {
       RayQ ray = rayOf(rays, band, pixel, sample);
-      ExactHit hit = second_->cast(ray);
+      hit = second_->cast(ray);
       V3 normal = hit ? second_->surface(ray, hit).normal : V3{};
       Light light = integrate(*scene_, job_.twoSided, ray, hit, normal);
-      for (std::size_t c = 0; c < 3; ++c) {
-        if (wanted_ & RGB8) band.rgb8[3 * pixel + c] = toLevel(light.rgb[c]);
-        if (wanted_ & RADIANCE) band.radiance[3 * pixel + c] += light.rgb[c];
-      }
-      if (wanted_ & DISTANCE)
-        band.distance[pixel] = hit ? static_cast<float>(hit.t) : std::numeric_limits<float>::infinity();
-      if (wanted_ & SOLID) band.solid[pixel] = hit.index;
-    });
-  }
+      for (int c = 0; c < 3; ++c) sum.rgb[c] += light.rgb[c];
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (wanted_ & RGB8) band.rgb8[3 * pixel + c] = toLevel(sum.rgb[c]);
+      if (wanted_ & RADIANCE) band.radiance[3 * pixel + c] = sum.rgb[c];
+    }
+    if (wanted_ & DISTANCE)
+      band.distance[pixel] = hit ? static_cast<float>(hit.t) : std::numeric_limits<float>::infinity();
+    if (wanted_ & SOLID) band.solid[pixel] = hit.index;
+  });
   if (surfaces_) fillSurfaces(band, rays);
 }
 

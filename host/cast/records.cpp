@@ -87,17 +87,20 @@ std::uint32_t Records::solids() const {
 
 Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
   std::vector<RowWriter> rows = writers(type);
+  const EyeFrames frames(eye);
   Records flags;
   std::vector<std::array<std::uint32_t, 2>> places;
   for (std::size_t i = 0; i < world.solids.size(); ++i) {
     const Shape& shape = world.solids[i].shape;
-    EyeRecord<f128> record(type);
-    std::visit([&](const auto& s) { packEye(s, eye, f128(i), record); }, shape);
-    auto kind = static_cast<std::uint32_t>(record.kind < 0 ? kindCount : record.kind);
-    places.push_back({kind, kind < kindCount ? static_cast<std::uint32_t>(rows[kind].rows()) : 0});
-    for (int r = 0; r < record.rows; ++r) rows[kind].add(record.row[r]);
-    flags.grazing = flags.grazing || record.grazing;
-    if (const auto* box = std::get_if<AABox>(&shape)) flags.boxOnFace = flags.boxOnFace || eyeOnFacePlane(*box, eye);
+    const auto keep = [&](const auto& record) {
+      auto kind = static_cast<std::uint32_t>(record.kind < 0 ? kindCount : record.kind);
+      places.push_back({kind, kind < kindCount ? static_cast<std::uint32_t>(rows[kind].rows()) : 0});
+      for (int r = 0; r < record.rows; ++r) rows[kind].add(record.row[r]);
+      flags.grazing = flags.grazing || record.grazing;
+    };
+    std::visit([&](const auto& s) { packed(s, frames, i, type, keep); }, shape);
+    if (const auto* box = std::get_if<AABox>(&shape))
+      flags.boxOnFace = flags.boxOnFace || eyeOnFacePlane(*box, frames.extended);
   }
   Records records = joined(rows, true);
   for (auto& place : places)

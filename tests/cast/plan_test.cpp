@@ -45,9 +45,13 @@ TEST(Plan, OnlyWhereItIsKnownToKeepEveryBit) {
   EXPECT_FALSE(choosePlan(facts(65), Plan::automatic).bakeLater);
 }
 
-TEST(Plan, ManySolidsGoByTiles) {
-  for (const RealType real : {RealType::f32, RealType::f64})
-    EXPECT_EQ(choosePlan(facts(100000, real), Plan::automatic).plan, Plan::tiles);
+TEST(Plan, ManySolidsGoByListsOrTiles) {
+  for (const RealType real : {RealType::f32, RealType::f64}) {
+    PlanFacts f = facts(100000, real);
+    EXPECT_EQ(choosePlan(f, Plan::automatic).plan, Plan::lists);
+    f.program.camera = 2;  // no common eye
+    EXPECT_EQ(choosePlan(f, Plan::automatic).plan, Plan::tiles);
+  }
 }
 
 TEST(Plan, FewSolidsNeverGoByTiles) {

@@ -1,0 +1,151 @@
+// Plan lists: a solid that is missing from a tile's list would leave the picture without a trace, so every picture is
+// held against the plan that tries all solids on all pixels.
+#include <cmath>
+
+#include "host/error.h"
+#include "host/scene/random.h"
+#include "tests/cast/fixture.h"
+
+namespace solidcast {
+namespace {
+
+class Lists : public OnDevice {
+ protected:
+  static RenderJob small() {
+    RenderJob job;
+    job.width = 203, job.height = 151;
+    job.crop = {10, 20, 151, 101};
+    job.channels.rgb8 = job.channels.radiance = job.channels.distance = job.channels.solid = true;
+    return job;
+  }
+  static Band picture(const Scene& scene, const RenderJob& job, const CastOptions& options,
+                      CastStats* stats = nullptr) {
+    CastStats own;
+    Band all;
+    renderGpu(
+        device(), scene, job, options,
+        [&](Band& band) {
+          const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+          append(all.rgb8, band.rgb8), append(all.radiance, band.radiance);
+          append(all.distance, band.distance), append(all.solid, band.solid);
+        },
+        stats ? *stats : own);
+    return all;
+  }
+  static std::size_t hits(const Band& band) {
+    return static_cast<std::size_t>(std::count_if(band.solid.begin(), band.solid.end(), [](auto s) { return s >= 0; }));
+  }
+  static void expectAsStorage(const Scene& scene, const RenderJob& job, const std::string& what) {
+    for (const Method method : {Method::fast, Method::exact}) {
+      const Band all = picture(scene, job, {.method = method, .plan = Plan::storage});
+      expectSame(picture(scene, job, {.method = method, .plan = Plan::lists}), all, what + " " + nameOf(method));
+      EXPECT_GT(hits(all), 100u) << what;
+    }
+  }
+};
+
+/// Between the bars of one scene's kinds: the camera stands in the middle of what randomScene() makes.
+Scene fromWithin(Scene scene) {
+  std::get<PerspectiveCamera>(scene.camera).center = {0.3, -0.2, 0.1};
+  return scene;
+}
+Scene allAround(const Scene& scene) {
+  Scene around = scene;
+  around.camera = EnvironmentCamera{{0.3, -0.2, 0.1}, {1, 0.2, -1}, {0, 1, 0}, 180, 360};
+  return around;
+}
+
+TEST_F(Lists, HaveTheBytesOfTheOtherPlans) {
+  for (const std::string& name : bundledScenes()) {
+    const Scene scene = loaded(name);
+    if (!std::holds_alternative<OrthographicCamera>(scene.camera)) expectAsStorage(scene, small(), name);
+  }
+}
+
+TEST_F(Lists, OfEveryKindFromOutsideFromWithinAndAllAround) {
+  for (const std::string& kind : randomKinds()) {
+    const Scene scene = randomScene(kind, kind == "plane" ? 20 : 300, 5);
+    expectAsStorage(scene, small(), kind);
+    expectAsStorage(fromWithin(scene), small(), kind + " from within");
+    expectAsStorage(allAround(scene), small(), kind + " all around");
+  }
+}
+
+TEST_F(Lists, SamplesTwoSidedAndBands) {
+  const Scene scene = fromWithin(randomScene("mixed", 400, 6));
+  RenderJob job = small();
+  job.samples = 3, job.twoSided = true;
+  expectAsStorage(scene, job, "samples");
+  job.samples = 1;
+  const Band whole = picture(scene, job, {.plan = Plan::lists});
+  CastStats stats;
+  expectSame(picture(scene, job, {.plan = Plan::lists, .memoryBudget = std::size_t{600} << 10}, &stats), whole,
+             "bands");
+  EXPECT_TRUE(std::any_of(stats.plan.begin(), stats.plan.end(),
+                          [](const std::string& line) { return line.rfind("in bands of ", 0) == 0; }));
+}
+
+/// One caster, several scenes: what the first left in buffers and pipelines must not show in the next.
+TEST_F(Lists, ACasterGoesFromSceneToScene) {
+  const RenderJob job = small();
+  std::vector<Scene> scenes;
+  for (const std::uint32_t count : {300u, 5u, 1000u}) scenes.push_back(randomScene("mixed", count, count));
+  scenes.push_back(fromWithin(scenes[0]));
+  Scene empty = scenes[0];
+  empty.world.solids.clear();
+  empty.world.groups = {GroupEntry{}};
+  scenes.push_back(empty);
+  scenes.push_back(scenes[1]);
+  for (const Method method : {Method::fast, Method::exact}) {
+    ImageCaster caster(device(), scenes[0], job, {.method = method, .plan = Plan::lists});
+    for (const Scene& scene : scenes) {
+      caster.setScene(scene);
+      Band now;
+      caster.render([&](Band& band) { now = std::move(band); });
+      const Band fresh = picture(scene, job, {.method = method, .plan = Plan::lists});
+      EXPECT_EQ(now.solid, fresh.solid);
+      EXPECT_EQ(now.rgb8, fresh.rgb8);
+    }
+  }
+}
+
+/// Discs one behind the other, far ones first: all are in every list, the last is in front.
+Scene stack(std::uint32_t count) {
+  Scene scene;
+  scene.width = scene.height = 8;
+  scene.camera = PerspectiveCamera{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 40, 40};
+  for (std::uint32_t i = 0; i < count; ++i)
+    scene.world.solids.push_back({"", Disc{{0, 0, -2 - 1e-5 * (count - 1 - i)}, {0, 0, 1}, 50}, 0});
+  return scene;
+}
+
+/// llvmpipe stops the loops of an invocation after 65535 rounds without a word.
+TEST_F(Lists, LongerThanTheDriverWalks) {
+  for (const std::uint32_t count : {66000u, 140000u})
+    for (const Method method : {Method::fast, Method::exact}) {
+      const Scene scene = stack(count);
+      RenderJob job;
+      job.width = job.height = 8;
+      job.channels.solid = job.channels.distance = true;
+      const Band band = picture(scene, job, {.method = method, .plan = Plan::lists});
+      ASSERT_EQ(band.solid.size(), 64u);
+      EXPECT_EQ(hits(band), 64u);
+      for (std::size_t i = 0; i < band.solid.size(); ++i)
+        EXPECT_EQ(band.solid[i], static_cast<std::int32_t>(count - 1))
+            << count << " " << nameOf(method) << " pixel " << i;
+    }
+}
+
+TEST_F(Lists, AreForCamerasWithOneEye) {
+  try {
+    const Scene scene = loaded("orthographic.json");
+    picture(scene, small(), {.plan = Plan::lists});
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Exit::usage);
+    EXPECT_NE(std::string(error.what()).find("--plan lists: not possible here: "), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace solidcast
