@@ -32,7 +32,7 @@ template <class Solid>
 std::optional<Bounds> boundsOfSolid(const Solid& solid) {
   Bounds b;
   const auto corners = outline(solid, Triple{0, 0, 0});
-  if constexpr (std::tuple_size_v<decltype(outline(solid, Triple{}))> > 0) {
+  if constexpr (std::tuple_size_v < decltype(outline(solid, Triple{})) >> 0) {
     for (std::size_t i = 0; i < 3; ++i) {
       double lo = corners[0][i], hi = lo;
       for (const Triple& p : corners) lo = std::min(lo, p[i]), hi = std::max(hi, p[i]);
@@ -91,7 +91,8 @@ std::optional<Bounds> boundsOfSolid(const Quadric& quadric) {
     level -= l[i] * center[i];
     levelSize += fabsq(l[i]) * uncertain[i];
   }
-  level = larger(f128(0), level) + wide * levelSize;  // below 0 there is no surface: a box costs less than a case of its own
+  level = larger(f128(0), level) +
+          wide * levelSize;  // below 0 there is no surface: a box costs less than a case of its own
   Bounds b;
   for (int i = 0; i < 3; ++i) {
     const f128 half = sqrtq(level * cofactor[i][i] / determinant), slack = wide * (uncertain[i] + half);

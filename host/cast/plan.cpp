@@ -29,11 +29,12 @@ constexpr double bakedPart = 0.45;  // of a ray from a uniform buffer
 constexpr double widePart = 0.7;    // the same with 8 rays an invocation and records held
 // More rays an invocation save about 1 ns a ray and take up to 20 ms longer to compile with a warm cache, 100 ms without.
 constexpr double fewestWide = 2e7;
-constexpr double storageTimes = 1.5;  // the same
-constexpr double pipelineMs = 15;     // from the driver's cache, as most are
-constexpr double flattenUs = 4;       // a solid, in binary128
-constexpr double indexUs = 0.5;       // a solid, on two threads
-constexpr double queryNs = 1.6;       // a free ray of a query and a solid, any method, from a uniform buffer
+constexpr double storageTimes = 1.5;    // the same
+constexpr double pipelineMs = 15;       // from the driver's cache, as most are
+constexpr double listsPipelineMs = 30;  // the same for sixteen rays an invocation
+constexpr double flattenUs = 4;         // a solid, in binary128
+constexpr double indexUs = 0.5;         // a solid, on two threads
+constexpr double queryNs = 1.6;         // a free ray of a query and a solid, any method, from a uniform buffer
 
 double perSolidNs(const Program& p) {
   if (p.job == Job::rays) return queryNs;
@@ -121,7 +122,7 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
     }
     case Plan::lists: {
       const bool fast = f.program.method == Method::fast;
-      cost.prepare_ms = f.pictures * (0.2 + n * (fast ? 2e-5 : 2e-4)) + pipelineMs;
+      cost.prepare_ms = f.pictures * (0.2 + n * (fast ? 2e-5 : 2e-4)) + listsPipelineMs;
       cost.rays_ms = rays * (fast ? 4e-6 : 8e-6) + f.count[0] * rays * perSolid;
       if (!f.program.eye()) cost.impossible = "rays without a common origin have no lists";
       else if (f.program.hits) cost.impossible = "normals come from world records, of which lists have none";

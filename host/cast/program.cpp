@@ -99,8 +99,7 @@ gpu::CompiledModule programModule(const Program& program, const CastOptions& opt
   return gpu::compile(folder / (program.job == Job::pixels ? "pixels.comp"
                                 : program.job == Job::rays ? "rays.comp"
                                                            : "lists.comp"),
-                      program.defines(), {folder})
-      .spirv;
+                      program.defines(), {folder});
 }
 
 std::vector<std::string> leftOutLines(const Program& program, const World& world, const Channels& channels) {

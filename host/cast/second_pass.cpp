@@ -26,18 +26,18 @@ std::vector<SecondPass::Candidate> SecondPass::candidates(const RayQ& ray, f128 
   std::call_once(built_, [&] {
     if (!index_) own_ = std::make_unique<Index>(buildIndex(world_)), index_ = own_.get();
   });
-  const f128 length = solidcast::length(ray.direction);
-  double o[3], d[3], nearest = static_cast<double>(limit * length);
+  const f128 perT = length(ray.direction);
+  double o[3], d[3], nearest = static_cast<double>(limit * perT);
   for (int k = 0; k < 3; ++k) {
     o[k] = static_cast<double>(ray.origin[k]);
-    d[k] = static_cast<double>(ray.direction[k] / length);
+    d[k] = static_cast<double>(ray.direction[k] / perT);
   }
   std::vector<Candidate> all;
   IndexWalk(o, d).visit(*index_, nearest, [&](std::uint32_t solid) {
     const Cut c = cutOf(world_.solids[solid].shape, ray);
     if (!c.hit) return;
     all.push_back({solid, c});
-    nearest = std::min(nearest, static_cast<double>(c.t * length));
+    nearest = std::min(nearest, static_cast<double>(c.t * perT));
   });
   std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.solid < b.solid; });
   return all;

@@ -27,8 +27,9 @@ TEST_P(Moving, PicturesAreThoseOfAFreshCaster) {
   for (const std::string name : {"a_solids.json", "solids/sphere.json", "environment.json", "orthographic.json"}) {
     const Scene scene = loaded(name);
     const RenderJob job = smallJob();
-    for (const Plan plan : {Plan::automatic, Plan::baked, Plan::tiles}) {
+    for (const Plan plan : {Plan::automatic, Plan::baked, Plan::tiles, Plan::lists}) {
       if (plan == Plan::baked && scene.world.solids.size() > 1) continue;  // compiled six times: one solid says as much
+      if (plan == Plan::lists && (GetParam() == Method::naive || name == "orthographic.json")) continue;  // no one eye
       const CastOptions options{.method = GetParam(), .plan = plan};
       ImageCaster moved(device(), scene, job, options);
       whole(moved);

@@ -155,7 +155,7 @@ TEST_P(Plumbing, StorageBuffersAreAsUniformOnes) {
     const Channels channels{.distance = true, .solid = true, .normal = true, .local = true, .position = true};
     CastStats statsA, statsB;
     const Band x = renderWhole(device(), a, jobOf(a, channels), {.method = GetParam()}, &statsA);
-    const Band y = renderWhole(device(), b, jobOf(b, channels), {.method = GetParam()}, &statsB);
+    const Band y = renderWhole(device(), b, jobOf(b, channels), {.method = GetParam(), .plan = Plan::storage}, &statsB);
     EXPECT_EQ(statsA.module.find("storage"), std::string::npos) << statsA.module;
     EXPECT_NE(statsB.module.find("storage"), std::string::npos) << statsB.module;
     int changed = 0;  // an environment or orthographic camera may see the others
