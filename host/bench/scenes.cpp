@@ -10,12 +10,12 @@
 
 namespace solidcast::bench {
 
-struct CarriedScene {
+struct CarriedText {
   const char* name;
   std::string_view text;
 };
-extern const CarriedScene kCarriedScenes[];  // made by the build from scenes/*.json
-extern const std::size_t kCarriedSceneCount;
+extern const CarriedText kCarriedTexts[];  // made by the build from scenes/*.json
+extern const std::size_t kCarriedTextCount;
 
 namespace {
 
@@ -52,15 +52,15 @@ Scene randomNamed(const std::string& name) {
 
 std::vector<std::string> carriedScenes() {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < kCarriedSceneCount; ++i) names.emplace_back(kCarriedScenes[i].name);
+  for (std::size_t i = 0; i < kCarriedTextCount; ++i) names.emplace_back(kCarriedTexts[i].name);
   return names;
 }
 
 Scene sceneNamed(const std::string& name, std::vector<std::string>& warnings) {
   if (name.starts_with(kRandom)) return randomNamed(name);
   if (!std::filesystem::exists(name))
-    for (std::size_t i = 0; i < kCarriedSceneCount; ++i)
-      if (name == kCarriedScenes[i].name) return parseScene(std::string(kCarriedScenes[i].text), name, warnings);
+    for (std::size_t i = 0; i < kCarriedTextCount; ++i)
+      if (name == kCarriedTexts[i].name) return parseScene(std::string(kCarriedTexts[i].text), name, warnings);
   return loadScene(name, warnings);
 }
 

@@ -109,7 +109,7 @@ int run(int argc, char** argv) {
   addWatch(app);
   try {
     checkVerb(app, argc, argv);
-    std::vector<std::string> words = withPlanNames({argv + 1, argv + argc});
+    std::vector<std::string> words = withLeftOutValues({argv + 1, argv + argc});
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app.parse(std::move(words));
   } catch (const CLI::RuntimeError& error) {

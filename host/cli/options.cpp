@@ -145,15 +145,22 @@ void printPlan(const CastingOptions& options, const CastStats& stats) {
   for (const std::string& line : stats.plan) note("plan: " + line);
 }
 
-std::vector<std::string> withPlanNames(std::vector<std::string> words) {
-  const std::vector<std::string> names = planNames();
+std::vector<std::string> withLeftOutValues(std::vector<std::string> words) {
+  const std::vector<std::string> plans = planNames();
+  const auto isPlan = [&plans](const std::string& word) {
+    return std::find(plans.begin(), plans.end(), word) != plans.end();
+  };
+  const auto isNumber = [](const std::string& word) {
+    return !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isdigit(c); });
+  };
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] != "--plan") continue;
-    if (i + 1 < words.size() && std::find(names.begin(), names.end(), words[i + 1]) != names.end()) {
+    const bool plan = words[i] == "--plan", serve = words[i] == "--serve";
+    if (!plan && !serve) continue;
+    if (i + 1 < words.size() && (plan ? isPlan(words[i + 1]) : isNumber(words[i + 1]))) {
       words[i] += "=" + words[i + 1];
       words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     } else {
-      words[i] += std::string("=") + kShowPlan;
+      words[i] += std::string("=") + (plan ? kShowPlan : kUsualPort);
     }
   }
   return words;

@@ -50,9 +50,12 @@ void addPlan(CLI::App& verb, CastingOptions& options);
 /// The decision with its reasons on standard error, where it was asked for.
 void printPlan(const CastingOptions& options, const CastStats& stats);
 
-/// "--plan" may stand alone, with a plan's name behind it, or as --plan=NAME: the first two become the third, so that a
-/// scene's file is not taken for a plan.
-std::vector<std::string> withPlanNames(std::vector<std::string> words);
+/// The port of `watch --serve` alone.
+inline constexpr const char* kUsualPort = "8088";
+
+/// "--plan" and "--serve" may stand alone, with a plan's name or a port behind them, or as --plan=NAME: the first two become
+/// the third, so that a scene's file is not taken for one.
+std::vector<std::string> withLeftOutValues(std::vector<std::string> words);
 
 /// --backend gpu|cpu.
 void addBackend(CLI::App& verb, Backend& backend);

@@ -1,15 +1,19 @@
 // `solidcast watch`: a scene that is rendered again whenever it, its meshes or its shaders are saved.
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "host/cli/interrupt.h"
 #include "host/cli/options.h"
 #include "host/cli/verbs.h"
 #include "host/error.h"
 #include "host/image/writer.h"
+#include "host/watch/compare.h"
 #include "host/watch/files.h"
+#include "host/watch/server.h"
 #include "host/watch/session.h"
 
 namespace solidcast::cli {
@@ -23,10 +27,12 @@ is right replaces it. Ctrl-C ends the watch with exit code 0.
 Examples:
   solidcast watch scenes/a_solids.json
   solidcast watch scenes/a_solids.json -o live.png --size 320x240
-  solidcast watch scenes/a_solids.json --shaders shaders)";
+  solidcast watch scenes/a_solids.json --shaders shaders
+  solidcast watch scenes/a_solids.json --serve)";
 
 struct Watch {
   std::string scene, output;
+  std::optional<int> port;  // of the page
   ImageOptions image;
   CastingOptions casting;
 };
@@ -69,7 +75,9 @@ void checkStart(const Watch& options) {
     throw Error(Exit::usage, "--shaders: " + folder + " is no folder, expected one with pixels.comp");
 }
 
-void run(Watch& options) {
+void run(const CLI::App& verb, Watch& options) {
+  if (verb.count("--precision") > 0 && !options.port)
+    throw Error(Exit::usage, "--precision: chooses the number type of the CPU reference, expected --serve with it");
   if (options.output.empty()) options.output = std::filesystem::path(options.scene).stem().string() + ".png";
   checkStart(options);
   const std::unique_ptr<gpu::Device> device = openDevice(options.casting);
@@ -80,6 +88,7 @@ void run(Watch& options) {
   wishes.view.integrator = options.image.integrator;
   wishes.view.method = options.casting.cast.method;
   wishes.cast = options.casting.cast;
+  wishes.precision = options.casting.precision;
   wishes.prepare = [&options](Scene& scene, const std::string& integrator, const Channels& channels) {
     ImageOptions image = options.image;
     image.integrator = integrator;
@@ -88,8 +97,16 @@ void run(Watch& options) {
   };
   watch::Session session(*device, wishes);
   watch::FileWatcher watcher;
+  watch::Board board;
+  std::optional<watch::BackgroundReference> reference;
+  std::optional<watch::Server> server;
+  if (options.port) {
+    reference.emplace(board, options.casting.precision);
+    server.emplace(board, *options.port);
+    note("open " + server->url());
+  }
   std::vector<std::filesystem::path> changed;
-  const int wakers[] = {interrupt.readable()};
+  const int wakers[] = {interrupt.readable(), board.readable()};
   for (bool first = true; interrupt.number() == 0; first = false) {
     if (first || !changed.empty()) {
       const auto start = std::filesystem::file_time_type::clock::now();
@@ -98,6 +115,8 @@ void run(Watch& options) {
       if (fresh) reportFrame(session, options.output);
       if (session.state() != Exit::fine && watcher.quiet()) reportProblems(session);
     }
+    board.serve(session);
+    board.put(session);
     changed = watcher.wait(wakers);
   }
   note("watch ended");
@@ -113,9 +132,23 @@ void addWatch(CLI::App& app) {
   verb->add_option("-o,--output", options->output,
                    "image file (default: the scene's name with .png, in the current folder)")
       ->type_name("FILE");
+  verb->add_option_function<std::string>(
+          "--serve",
+          [options](const std::string& text) {
+            int port = -1;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+            if (error != std::errc() || end != text.data() + text.size() || port < 0 || port > 65535)
+              throw Error(Exit::usage, "--serve: \"" + text + "\" is no port, expected 0 (any free one) to 65535");
+            options->port = port;
+          },
+          std::string(
+              "show it in a browser on this machine: image, errors, camera, the CPU reference beside it, pixels "
+              "explained; 0 is any free port (default ") +
+              kUsualPort + ")")
+      ->type_name("[PORT]");
   addImageOptions(*verb, options->image);
   addCastingOptions(*verb, options->casting);
-  verb->callback([options] { run(*options); });
+  verb->callback([verb, options] { run(*verb, *options); });
 }
 
 }  // namespace solidcast::cli

@@ -139,6 +139,35 @@ class Marks {
   std::vector<double> here_, below_;
 };
 
+/// A, B and the heat map of each pixel; rows are asked for in order.
+class Panels {
+ public:
+  Panels(const Image& a, const Image& b, const Census& census, bool spread)
+      : a_(a), b_(b), tone_(a, b), heat_(census), marks_(a, b, spread) {}
+
+  const Heat& heat() const { return heat_; }
+
+  std::vector<std::array<Colour, 3>> row(int y) {
+    const std::vector<double> differences = marks_.row(y);
+    std::vector<std::array<Colour, 3>> pixels(differences.size());
+    for (std::size_t x = 0; x < pixels.size(); ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * pixels.size() + x;
+      auto& [a, b, heat] = pixels[x];
+      a = tone_.colour(a_, pixel);
+      b = tone_.colour(b_, pixel);
+      for (std::size_t i = 0; i < 3; ++i) heat[i] = a[i] / 4;
+      if (differences[x] > 0) heat = heat_.colour(differences[x]);
+    }
+    return pixels;
+  }
+
+ private:
+  const Image &a_, &b_;
+  Tone tone_;
+  Heat heat_;
+  Marks marks_;
+};
+
 std::string fitting(std::string text, int width, int textScale) {
   while (!text.empty() && Canvas::textWidth(text, textScale) > width) text.pop_back();
   return text;
@@ -193,6 +222,15 @@ Band bandOf(const Canvas& canvas, int firstRow) {
 
 }  // namespace
 
+std::vector<std::uint8_t> heatMap(const Image& a, const Image& b, const Census& census) {
+  Panels panels(a, b, census, true);
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(std::size_t{3} * a.width * a.height);
+  for (int y = 0; y < a.height; ++y)
+    for (const auto& pixel : panels.row(y)) rgb.insert(rgb.end(), pixel[2].begin(), pixel[2].end());
+  return rgb;
+}
+
 DifferencePicture::DifferencePicture(const std::string& path, int width, int height)
     : scale_(magnification(width, height)),
       panelWidth_(std::max(width * scale_, kNarrowest)),
@@ -212,19 +250,12 @@ void DifferencePicture::write(const Image& a, const Image& b, const Census& cens
     head.text(i * step + kGap, letter / 2, textScale_, fitting(titles[i], panelWidth_ - 2 * kGap, textScale_), kInk);
   writer_.rows(bandOf(head, 0));
 
-  const Tone tone(a, b);
-  const Heat heat(census);
-  Marks marks(a, b, scale_ == 1);
+  Panels panels(a, b, census, scale_ == 1);
   for (int y = 0; y < a.height; ++y) {
-    const std::vector<double> differences = marks.row(y);
+    const std::vector<std::array<Colour, 3>> pixels = panels.row(y);
     Canvas row(total, scale_, kPaper);
-    for (int x = 0; x < a.width; ++x) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + x;
-      Colour shown[3] = {tone.colour(a, pixel), tone.colour(b, pixel), {}};
-      for (std::size_t i = 0; i < 3; ++i) shown[2][i] = shown[0][i] / 4;
-      if (differences[x] > 0) shown[2] = heat.colour(differences[x]);
-      for (int i = 0; i < 3; ++i) row.fill(i * step + x * scale_, 0, scale_, scale_, shown[i]);
-    }
+    for (int x = 0; x < a.width; ++x)
+      for (int i = 0; i < 3; ++i) row.fill(i * step + x * scale_, 0, scale_, scale_, pixels[x][i]);
     writer_.rows(bandOf(row, head.height() + y * scale_));
   }
 
@@ -234,7 +265,7 @@ void DifferencePicture::write(const Image& a, const Image& b, const Census& cens
     foot.text(kGap, line, textScale_, fact, kInk);
     line += 3 * letter / 2;
   }
-  drawBar(foot, 2 * step + kGap, letter, panelWidth_ - 2 * kGap, textScale_, heat, census);
+  drawBar(foot, 2 * step + kGap, letter, panelWidth_ - 2 * kGap, textScale_, panels.heat(), census);
   writer_.rows(bandOf(foot, head.height() + panelHeight_));
   writer_.finish();
 }

@@ -14,9 +14,11 @@
 #include <cstring>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "host/image/encoders.h"
+#include "host/image/writer.h"
 
 namespace solidcast {
 namespace {
@@ -67,13 +69,13 @@ struct Segment {
 
 class PngEncoder final : public RowEncoder {
  public:
-  PngEncoder(OutputFile& file, int width, int height)
-      : file_(file),
+  PngEncoder(ByteSink sink, int width, int height)
+      : sink_(std::move(sink)),
         rowBytes_(3 * static_cast<std::size_t>(width)),
         segmentRows_(std::max<std::size_t>(1, kSegmentBytes / rowBytes_)),
         rowsLeft_(static_cast<std::size_t>(height)) {
     constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    file_.append(kSignature.data(), kSignature.size());
+    sink_(kSignature.data(), kSignature.size());
     Bytes header(13);
     putBig(&header[0], static_cast<std::uint32_t>(width));
     putBig(&header[4], static_cast<std::uint32_t>(height));
@@ -193,10 +195,10 @@ class PngEncoder final : public RowEncoder {
     const std::uint32_t checksum = crc32_gzip_refl(0, chunk.data() + 4, chunk.size() - 4);
     chunk.resize(chunk.size() + 4);
     putBig(&chunk[chunk.size() - 4], static_cast<std::uint32_t>(checksum));
-    file_.append(chunk.data(), chunk.size());
+    sink_(chunk.data(), chunk.size());
   }
 
-  OutputFile& file_;
+  ByteSink sink_;
   std::size_t rowBytes_, segmentRows_, rowsLeft_;
   Bytes waiting_;  // rows of a segment that is not complete yet
   uLong adler_ = 1;
@@ -205,8 +207,18 @@ class PngEncoder final : public RowEncoder {
 
 }  // namespace
 
-std::unique_ptr<RowEncoder> makePngEncoder(OutputFile& file, int width, int height) {
-  return std::make_unique<PngEncoder>(file, width, height);
+std::unique_ptr<RowEncoder> makePngEncoder(ByteSink sink, int width, int height) {
+  return std::make_unique<PngEncoder>(std::move(sink), width, height);
+}
+
+std::string pngOf(const std::vector<std::uint8_t>& rgb8, int width, int height) {
+  std::string png;
+  PngEncoder encoder(
+      [&png](const void* bytes, std::size_t count) { png.append(static_cast<const char*>(bytes), count); }, width,
+      height);
+  encoder.rows(rgb8.data(), height);
+  encoder.finish();
+  return png;
 }
 
 }  // namespace solidcast

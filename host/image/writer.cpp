@@ -22,7 +22,8 @@ std::unique_ptr<RowEncoder> makeEncoder(ImageFormat format, OutputFile& file, in
   const int channels = kind == ImageKind::distance || kind == ImageKind::solid ? 1 : 3;
   switch (format) {
     case ImageFormat::png:
-      return makePngEncoder(file, width, height);
+      return makePngEncoder([&file](const void* bytes, std::size_t count) { file.append(bytes, count); }, width,
+                            height);
     case ImageFormat::pfm:
       return makePfmEncoder(file, width, height, channels);
     case ImageFormat::hdr:

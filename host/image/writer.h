@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "host/image/band.h"
 
@@ -39,6 +40,9 @@ std::string imagePathFor(const std::string& path, ImageKind kind);
 
 /// Asks for the channel of a Band that a file of this format and kind is made of.
 void addChannel(Channels& channels, ImageFormat format, ImageKind kind);
+
+/// A PNG in memory, of 3 bytes a pixel: for what is shown and not kept.
+std::string pngOf(const std::vector<std::uint8_t>& rgb8, int width, int height);
 
 class ImageWriter {
  public:

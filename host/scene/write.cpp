@@ -102,6 +102,12 @@ void writeSolids(const World& world, const Write& write) {
 
 }  // namespace
 
+std::string cameraText(const Camera& camera) {
+  std::string text = "{";
+  text += std::visit([](const auto& c) { return fields(c); }, camera);
+  return text += "}";
+}
+
 void writeScene(const Scene& scene, std::string_view comment, const TextSink& sink) {
   std::string piece;
   const auto write = [&](std::string_view text) {
@@ -118,8 +124,8 @@ void writeScene(const Scene& scene, std::string_view comment, const TextSink& si
     comment.remove_prefix(std::min(comment.size(), line.size() + 1));
   }
   write("{\n  \"image\": {\"width\": " + std::to_string(scene.width) + ", \"height\": " + std::to_string(scene.height));
-  write("},\n  \"camera\": {" + std::visit([](const auto& camera) { return fields(camera); }, scene.camera));
-  write("},\n  \"integrator\": " + integrators(scene));
+  write("},\n  \"camera\": " + cameraText(scene.camera));
+  write(",\n  \"integrator\": " + integrators(scene));
   if (scene.twoSided) write(",\n  \"two_sided\": true");
   write(",\n  \"solids\": [");
   writeSolids(scene.world, write);

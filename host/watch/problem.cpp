@@ -168,7 +168,7 @@ std::string asText(const Problem& problem) {
   const std::string number = std::to_string(problem.line);
   text += "  " + number + " | " + problem.source + "\n";
   if (problem.column > 0 && static_cast<std::size_t>(problem.column) <= problem.source.size() + 1)
-    text += "  " + std::string(number.size(), ' ') + " | " + std::string(problem.column - 1, ' ') + "^\n";
+    text.append(2 + number.size(), ' ').append(" | ").append(problem.column - 1, ' ').append("^\n");
   return text;
 }
 

@@ -12,6 +12,7 @@
 #include "host/cast/caster.h"
 #include "host/error.h"
 #include "host/watch/problem.h"
+#include "reference_cpu/reference.h"
 
 namespace solidcast::watch {
 
@@ -47,7 +48,8 @@ class Session {
   struct Options {
     std::string scene, output;
     View view;
-    CastOptions cast;  // the view's method goes before
+    CastOptions cast;                                            // the view's method goes before
+    reference::Precision precision = reference::Precision::f64;  // of what it is compared with
     /// Changes the scene as the user wishes, with this integrator, and tells the job. May throw Error(Exit::usage).
     std::function<RenderJob(Scene& scene, const std::string& integrator, const Channels& channels)> prepare;
   };
@@ -67,6 +69,8 @@ class Session {
   bool show(const View& view);
 
   const View& view() const { return options_.view; }
+  const Options& options() const { return options_; }
+  gpu::Device& device() { return device_; }
   /// None before the first good one.
   std::shared_ptr<const Frame> frame() const { return frame_; }
   /// Of the scene, then of the shaders, then of the output; each in the order of the messages.

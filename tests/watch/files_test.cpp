@@ -40,7 +40,8 @@ class Files : public ::testing::Test {
       const auto until = std::chrono::steady_clock::now() + most;
       while (!stopped.stop_requested() && std::chrono::steady_clock::now() < until)
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
-      if (!stopped.stop_requested()) EXPECT_EQ(::write(stop_[1], "x", 1), 1);
+      if (stopped.stop_requested()) return;
+      EXPECT_EQ(::write(stop_[1], "x", 1), 1);
     });
     return watcher.wait(std::span<const int>(&stop_[0], 1));
   }

@@ -103,6 +103,7 @@ TEST_F(AtASphere, WhatNoEditCanMendEndsItAtOnce) {
   const std::string scene = folder / "ball.json";
   expectError(run({"watch", folder / "none.json"}), 2, {"none.json", "no such file"});
   expectError(run({"watch", "-"}), 2, {"standard input"});
+  expectError(run({"watch", scene, "--precision", "f32"}), 2, {"--precision", "--serve"});
   expectError(run({"watch", scene, "-o", "-"}), 2, {"standard output"});
   expectError(run({"watch", scene, "-o", "x.jpeg"}), 2, {"x.jpeg", ".png"});
   expectError(run({"watch", scene, "--shaders", folder / "none"}), 2, {"--shaders", "none"});
