@@ -272,7 +272,7 @@ function verdictRow(name, verdict) {
   colour.style.background = `rgb(${verdict.rgb_levels.join(' ')})`;
   const solid = element('span');
   solid.append(colour, verdict.solid ?? 'nothing');
-  const error = verdict.fault || (verdict.t === null ? '' : verdict.t_error_ulp.toPrecision(2) + ' ulp');
+  const error = verdict.fault ? 'wrong' : verdict.t === null ? '' : verdict.t_error_ulp.toPrecision(2) + ' ulp';
   return row([[name], [solid], [verdict.t_decimal?.slice(0, 14) ?? '', 'n'], [error, verdict.right ? 'n' : 'n wrong']]);
 }
 
