@@ -132,13 +132,8 @@ TEST(Documentation, ExamplesAreScenes) {
   const std::string text = readText(kRoot / "docs/scene-format.md");
   const Json rules = schema();
   std::set<std::string> shown;
-  for (std::size_t at = text.find("```json\n"); at != std::string::npos; at = text.find("```json\n", at)) {
-    const std::size_t begin = at + 8, end = text.find("```", begin);
-    const std::string block = text.substr(begin, end - begin);
-    at = end + 3;
-    const Json example = withComments(block);
+  const auto check = [&rules](const Json& example, const std::string& block) {
     const std::string type = example.value("type", "scene");
-    shown.insert(type);
     std::string scene = withSolids(block);
     if (type == "scene") scene = block;
     if (type.starts_with("casting")) scene = withMember("\"integrator\": " + block);
@@ -146,6 +141,18 @@ TEST(Documentation, ExamplesAreScenes) {
     std::vector<std::string> warnings;  // files are named from the folder of the bundled scenes
     EXPECT_NO_THROW(parseScene(scene, kRoot / "scenes/s.json", warnings)) << block;
     EXPECT_EQ(violation(rules, withComments(scene)), "") << block;
+    return type;
+  };
+  for (std::size_t at = text.find("```json\n"); at != std::string::npos; at = text.find("```json\n", at)) {
+    const std::size_t begin = at + 8, end = text.find("```", begin);
+    const std::string block = text.substr(begin, end - begin);
+    at = end + 3;
+    const Json example = withComments(block);
+    if (example.is_array()) {  // a camera path
+      for (const Json& camera : example) check(camera, camera.dump());
+    } else {
+      shown.insert(check(example, block));
+    }
   }
   const std::set<std::string> expected = {"scene",   "perspective", "orthographic",   "environment", "casting",
                                           "sphere",  "castingdist", "infinite_plane", "box",         "disc",
