@@ -62,7 +62,7 @@ class IndexWalk {
   void visit(const Index& index, const double& limit, F&& f) const {
     for (std::size_t at = 0; at < index.nodes.size();) {
       const IndexNode& node = index.nodes[at];
-      const bool met = meets(node, limit);
+      const bool met = meets(node.lo, node.hi, limit);
       if (met)
         for (std::uint32_t i = 0; i < node.leaf % 16; ++i) f(index.order[node.leaf / 16 + i]);
       const bool upperFirst = octant_ >> node.link % 4 & 1;
@@ -70,13 +70,14 @@ class IndexWalk {
     }
   }
 
- private:
-  bool meets(const IndexNode& node, double limit) const {
+  /// Whether the ray meets a box (of any number type that fp64 holds) within `limit`.
+  template <class Corner>
+  bool meets(const Corner& from, const Corner& to, double limit) const {
     double reach = reach_, enter = 0, leave = limit * (1 + 0x1p-30);
-    for (int k = 0; k < 3; ++k) reach += std::max(std::abs(double(node.lo[k])), std::abs(double(node.hi[k])));
+    for (int k = 0; k < 3; ++k) reach += std::max(std::abs(double(from[k])), std::abs(double(to[k])));
     const double margin = reach * 0x1p-46;
     for (int k = 0; k < 3; ++k) {
-      const double lo = node.lo[k] - margin - o_[k], hi = node.hi[k] + margin - o_[k];
+      const double lo = from[k] - margin - o_[k], hi = to[k] + margin - o_[k];
       if (std::abs(d_[k]) < 0x1p-60) {  // off by less than 2^-58 R on its whole way
         if (lo > 0 || hi < 0) return false;
         continue;
@@ -87,6 +88,7 @@ class IndexWalk {
     return enter <= leave * (1 + 0x1p-40);
   }
 
+ private:
   double o_[3], d_[3], reach_ = 0;
   std::size_t octant_ = 0;
 };

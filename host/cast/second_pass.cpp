@@ -5,12 +5,15 @@
 #include <cmath>
 #include <thread>
 
+#include "host/cast/bounds.h"
 #include "host/cast/index.h"
 #include "host/cast/rational_pass.h"
 #include "host/cast/solids/all.h"
 
 namespace solidcast {
 namespace {
+
+constexpr int fewCasts = 8;  // rays that look at every solid's box take as long as building the index
 
 Cut cutOf(const Shape& shape, const RayQ& ray) {
   Cut c = std::visit([&](const auto& s) { return cut(s, ray); }, shape);
@@ -23,9 +26,6 @@ SecondPass::SecondPass(const World& world, const Index* index) : world_(world), 
 SecondPass::~SecondPass() = default;
 
 std::vector<SecondPass::Candidate> SecondPass::candidates(const RayQ& ray, f128 limit) const {
-  std::call_once(built_, [&] {
-    if (!index_) own_ = std::make_unique<Index>(buildIndex(world_)), index_ = own_.get();
-  });
   const f128 perT = length(ray.direction);
   double o[3], d[3], nearest = static_cast<double>(limit * perT);
   for (int k = 0; k < 3; ++k) {
@@ -33,12 +33,22 @@ std::vector<SecondPass::Candidate> SecondPass::candidates(const RayQ& ray, f128 
     d[k] = static_cast<double>(ray.direction[k] / perT);
   }
   std::vector<Candidate> all;
-  IndexWalk(o, d).visit(*index_, nearest, [&](std::uint32_t solid) {
+  const IndexWalk walk(o, d);
+  const auto consider = [&](std::uint32_t solid) {
     const Cut c = cutOf(world_.solids[solid].shape, ray);
     if (!c.hit) return;
     all.push_back({solid, c});
     nearest = std::min(nearest, static_cast<double>(c.t * perT));
-  });
+  };
+  if (index_ == nullptr && cast_++ < fewCasts) {
+    for (std::uint32_t solid = 0; solid < world_.solids.size(); ++solid) {
+      const auto box = boundsOf(world_.solids[solid].shape);
+      if (!box || walk.meets(box->lo, box->hi, nearest)) consider(solid);
+    }
+    return all;  // by index already
+  }
+  if (index_ == nullptr) std::call_once(built_, [&] { own_ = std::make_unique<Index>(buildIndex(world_)); });
+  walk.visit(index_ != nullptr ? *index_ : *own_, nearest, consider);
   std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.solid < b.solid; });
   return all;
 }

@@ -2,6 +2,7 @@
 // binary128, against the world itself. It also gives a hit's t, normal and local coordinates to full precision when
 // the solid is known.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -24,8 +25,8 @@ struct Index;
 
 class SecondPass {
  public:
-  /// `index` is that of the world, not widened; without one, many solids get one when the first ray is cast. Both must
-  /// outlive this.
+  /// `index` is that of the world, not widened; without one, the world gets one once so many rays were cast that it pays.
+  /// Both must outlive this.
   explicit SecondPass(const World& world, const Index* index = nullptr);
   ~SecondPass();
 
@@ -47,9 +48,10 @@ class SecondPass {
   std::vector<Candidate> candidates(const RayQ& ray, f128 limit) const;
 
   const World& world_;
-  mutable const Index* index_;
+  const Index* index_;
   mutable std::unique_ptr<Index> own_;
   mutable std::once_flag built_;
+  mutable std::atomic<int> cast_ = 0;
 };
 
 /// Runs f(i) for 0 <= i < n on all cores; small n on this thread alone.
