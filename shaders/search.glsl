@@ -16,6 +16,8 @@ layout(constant_id = 23) const bool BOX_FACE_PLANE = false;  // some box has the
 #define BOX_FACE BOX_FACE_PLANE
 layout(constant_id = 30) const bool SOME_GRAZE = false;  // some flat solid is seen at too flat an angle
 #define GRAZING SOME_GRAZE
+layout(constant_id = 35) const bool SOME_FAR_SPHERE = false;  // fast: fp32 needs the careful discriminant
+#define FAR_SPHERES SOME_FAR_SPHERE
 layout(constant_id = 32) const bool SOME_TIE = true;  // solids of several kinds share a plane or a surface
 #define TIES SOME_TIE
 

@@ -58,11 +58,11 @@ struct Place {  // tiles from and to, both included
 struct ListBuilder::Part {
   std::array<std::array<Arena, kindCount>, 2> found;                       // Place and record, one after the other
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> tiles;  // entries by tile; then where the next goes
-  bool grazing = false, boxOnFace = false;
+  bool grazing = false, farSphere = false, boxOnFace = false;
   std::size_t seen = 0;
 
   void start() {
-    grazing = boxOnFace = false;
+    grazing = farSphere = boxOnFace = false;
     seen = 0;
     for (auto& level : found)
       for (Arena& arena : level) arena.clear();
@@ -75,6 +75,9 @@ struct ListBuilder::Part {
     for (std::size_t i = from; i < to; ++i)
       std::visit(
           [&](const auto& solid) {
+            // Of the whole scene, seen or not: so that fast has the same bits in every plan.
+            if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, Sphere>)
+              farSphere = farSphere || isFar(solid, eye.plain);
             Place place;
             Level level;
             if (!findPlace(silhouette.rectangle(solid), grid, place, level)) return;
@@ -161,10 +164,12 @@ void ListBuilder::collect(const Scene& scene, RealType type, const Silhouette& s
     const std::size_t from = solids * t / threads, to = solids * (t + 1) / threads;
     parts_[t]->collect(scene.world, from, to, type, silhouette, eye, grid);
   });
-  grazing_ = boxOnFace_ = false;
+  grazing_ = farSphere_ = boxOnFace_ = false;
   seen_ = 0;
-  for (const auto& part : parts_)
-    grazing_ = grazing_ || part->grazing, boxOnFace_ = boxOnFace_ || part->boxOnFace, seen_ += part->seen;
+  for (const auto& part : parts_) {
+    grazing_ = grazing_ || part->grazing, farSphere_ = farSphere_ || part->farSphere;
+    boxOnFace_ = boxOnFace_ || part->boxOnFace, seen_ += part->seen;
+  }
   layOut();
   sortTiles();
 }

@@ -46,6 +46,7 @@ class ListBuilder {
   std::array<bool, kindCount> kinds() const { return kinds_; }
   bool wideOnes() const { return wideOnes_; }  // some solids are in wide tiles
   bool grazing() const { return grazing_; }
+  bool farSphere() const { return farSphere_; }
   bool boxOnFace() const { return boxOnFace_; }
   std::size_t rows() const { return rows_; }  // that the lists take
   std::size_t seen() const { return seen_; }  // solids
@@ -69,7 +70,7 @@ class ListBuilder {
   RealType type_{};
   std::vector<std::unique_ptr<Part>> parts_;
   std::array<bool, kindCount> kinds_{};
-  bool grazing_ = false, boxOnFace_ = false, wideOnes_ = false;
+  bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, wideOnes_ = false;
   std::size_t rows_ = 0, seen_ = 0, listed_ = 0;
   // [narrow 0 or wide 1][kind]: by tile, and for the wide ones the count beside
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> first_, count_;

@@ -71,6 +71,7 @@ void ListSearch::build(const PassTarget& target, const Band& band, int firstRow,
   for (std::size_t k = 0; k < kindCount; ++k) kinds_[k] = kinds_[k] || builder_.kinds()[k];
   const bool exact = program_.method == Method::exact;
   grazing_ = grazing_ || (exact && builder_.grazing());
+  farSphere_ = farSphere_ || builder_.farSphere();
   boxOnFace_ = boxOnFace_ || (exact && builder_.boxOnFace());
   // Solids of one kind are walked in the order of their indices, but for the wide tiles' among them.
   ties_ = ties_ || builder_.wideOnes() || std::count(kinds_.begin(), kinds_.end(), true) > 1;
@@ -101,6 +102,7 @@ void ListSearch::makePipeline() {
   constants[viewRaws] = viewRaws_;
   constants[boxFacePlane] = boxOnFace_;
   constants[someGraze] = grazing_;
+  constants[someFarSphere] = farSphere_;
   constants[portioned] = portioned_;
   constants[integratorNumber] = static_cast<std::uint32_t>(scene_->integrator.index());
   constants[twoSided] = job_.job.twoSided;

@@ -28,7 +28,7 @@ class ListSearch : public PixelSearch {
   std::optional<Silhouette> silhouette_;
   ListBuilder builder_;
   std::array<bool, kindCount> kinds_{};  // that the pipeline has
-  bool grazing_ = false, boxOnFace_ = false, ties_ = false, portioned_ = false, told_ = false;
+  bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, ties_ = false, portioned_ = false, told_ = false;
   int builtRow_ = -1, partRows_ = 0;  // of the band
   std::size_t lanes_ = 0;
   std::uint32_t viewRaws_ = 0;

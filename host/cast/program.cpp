@@ -57,6 +57,7 @@ gpu::Specialisation recordConstants(const Program& program, const Records& searc
   s[boxFacePlane] = search.boxOnFace;
   s[someGraze] = search.grazing;
   s[someTie] = search.ties;
+  s[someFarSphere] = search.farSphere;
   return s;
 }
 

@@ -48,7 +48,8 @@ enum Constant : std::uint32_t {
   rays,
   someTie,
   held,
-  portioned
+  portioned,
+  someFarSphere
 };
 std::uint32_t bits(float value);
 

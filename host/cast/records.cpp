@@ -99,6 +99,8 @@ Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
       flags.grazing = flags.grazing || record.grazing;
     };
     std::visit([&](const auto& s) { packed(s, frames, i, type, keep); }, shape);
+    if (const auto* sphere = std::get_if<Sphere>(&shape))
+      flags.farSphere = flags.farSphere || isFar(*sphere, frames.plain);
     if (const auto* box = std::get_if<AABox>(&shape))
       flags.boxOnFace = flags.boxOnFace || eyeOnFacePlane(*box, frames.extended);
   }
@@ -108,6 +110,7 @@ Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
   records.places = std::move(places);
   records.boxOnFace = flags.boxOnFace;
   records.grazing = flags.grazing;
+  records.farSphere = flags.farSphere;
   if (type == RealType::f32) records.ties = mayTie(records, eye);
   return records;
 }

@@ -23,6 +23,7 @@ struct Records {
   std::vector<std::byte> bytes;
   std::size_t raws = 0;                              // vec4 or dvec4 that the rows take
   bool grazing = false;                              // GRAZING of hit.glsl
+  bool farSphere = false;                            // FAR_SPHERES of sphere.glsl
   bool boxOnFace = false;                            // BOX_FACE of box.glsl
   bool ties = true;                                  // TIES of hit.glsl
   std::vector<std::array<std::uint32_t, 2>> places;  // kind and row by index of the solid;

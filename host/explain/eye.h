@@ -29,11 +29,17 @@ class Eye {
     const V f = vector("record f = o - c", 0);
     const N C = log_.stage("record C = |f|^2 - r^2", at(0, 3));
     const N b = log_.stage("b = f.d", linear(f, d_));
-    const N q = log_.stage("q = b^2 - |d|^2 C", b * b - log_.squared * C);
+    N q;
+    if (log_.setting.farSphere) {
+      const V across = log_.stage("across = f - d b / |d|^2", f - d_ * (b / log_.squared));
+      q = log_.stage("q = |d|^2 (r^2 - |across|^2)", log_.squared * (at(1, 3) - linear(across, across)));
+    } else {
+      q = log_.stage("q = b^2 - |d|^2 C", b * b - log_.squared * C);
+    }
     const N h = log_.stage("h = sqrt q", root(q));
     const N difference = log_.stage("h - b", h - b);
     const N s = log_.stage("s = (h - b) / |C|", at(1, 0) * difference);
-    log_.counted("discriminant q = b^2 - |d|^2 C", q, N(1));
+    log_.counted("discriminant q", q, N(1));
     if (q >= N(0)) log_.sign("in front: h - b", difference);
     log_.offer(true, s);
   }

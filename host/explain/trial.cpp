@@ -155,7 +155,7 @@ Setting settingOf(const Scene& scene, Method method, RealType real, int width, i
   s.doubt = doubtOf(program);
   if (program.eye()) {
     const Records records = eyeRecords(scene.world, s.eye, real);
-    s.grazing = records.grazing, s.boxOnFace = records.boxOnFace;
+    s.grazing = records.grazing, s.farSphere = records.farSphere, s.boxOnFace = records.boxOnFace;
   }
   return s;
 }

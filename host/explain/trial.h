@@ -51,7 +51,7 @@ struct Setting {
   Method method = Method::exact;
   RealType real = RealType::f64;
   int camera = 0;  // pixels.comp's number
-  bool grazing = false, boxOnFace = false;
+  bool grazing = false, farSphere = false, boxOnFace = false;
   double doubt = 0;  // DOUBT of pixels.comp
   int column = 0, row = 0, width = 0, height = 0;
   EyeFrame eye;

@@ -5,21 +5,34 @@
 //        inside (C < 0), and the wanted root is always the larger. q < 0 gives NaN, which loses every comparison.
 //        Everything is scaled so that the bound of q's error is the shader's DOUBT; kappa undoes it. An eye very near the surface
 //        (|C| << |f|^2, where the numerator cancels) is given to the quadric's careful form by the host.
+//        fast, where some sphere of the scene is farther than 16 radii (FAR_SPHERES): b^2 and |d|^2 C are then nearly equal, and
+//        fp32 keeps nothing of q; by the vector from the centre to the ray, q = |d|^2 (r^2 - |f - d b / |d|^2|^2), it keeps
+//        all but 2^-21 |f| / r of it.
 //        Rounding: |q^ - q| <= 32u |d|^2 (|f|^2 + |C|); s keeps 2^-28 where q >= 64u^2 2^56 |d|^2 |f|^2.
 // free   the same from c and r, with the cancelling numerator avoided: from inside t > 0 needs care on one side only.
 // naive  a t^2 + 2 b t + c = 0 by the schoolbook formula.
 // The cosine falls out of the test: n.d = -+ sqrt(q)/r.
-// eye record    (f, C) (kappa, k, index, -)   cosine = k sqrt q
+// eye record    (f, C) (kappa, k, index, r^2)   cosine = k sqrt q
 // world record  (c, r) (index, -, -, -)
 #ifndef SOLIDCAST_SPHERE
 #define SOLIDCAST_SPHERE
 #include "../hit.glsl"
+
+#ifndef FAR_SPHERES
+#define FAR_SPHERES false
+#endif
 
 void sphere_eye(uint row, EyeRay ray, inout Best best) {
   real4 f = record(row);
   real4 more = record(row + 1u);
   real b = linear(real3(f.x, f.y, f.z), ray.direction);
   real q = sub(mul(b, b), mul(ray.squared, f.w));
+#if ARITHMETIC == 0
+  if (FAR_SPHERES) {
+    precise real3 across = f.xyz - ray.direction * (b / ray.squared);
+    q = mul(ray.squared, sub(more.w, linear(across, across)));
+  }
+#endif
   real h = root(q);
   real s = mul(more.x, sub(h, b));
   decided(best, q);

@@ -112,7 +112,7 @@ TEST_P(Plumbing, MoreThan65535Solids) {
   scene.camera = PerspectiveCamera{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 40, 40};
   constexpr int solids = 70'000;
   for (int i = 0; i < solids - 3; ++i)  // all of them out of sight, far behind
-    scene.world.solids.push_back({"", Sphere{{0.01 * (i % 1000), 0.01 * (i / 1000), 50}, 0.001}, 0});
+    scene.world.solids.push_back({"", Sphere{{0.01 * (i % 1000), 0.01 * (i / 1000), 50}, 4}, 0});
   scene.world.solids.push_back({"", InfinitePlane{{0, 0, -9}, {0, 0, 1}}, 0});
   scene.world.solids.push_back({"", Sphere{{0, 0, -6}, 1}, 0});
   scene.world.solids.push_back({"", Sphere{{0, 0, -5}, 0.5}, 0});
@@ -145,9 +145,9 @@ TEST_P(Plumbing, MoreThan65535Solids) {
 TEST_P(Plumbing, StorageBuffersAreAsUniformOnes) {
   const Scene few = course(60, 45);
   Scene many = few;
-  for (int i = 0; i < 4200; ++i) {  // behind the camera, small
+  for (int i = 0; i < 4200; ++i) {  // behind the camera
     many.world.groups[0].members.push_back({false, static_cast<std::uint32_t>(many.world.solids.size())});
-    many.world.solids.push_back({"", Sphere{{1e-3 * i, 0, 1000}, 1e-4}, 0});
+    many.world.solids.push_back({"", Sphere{{1e-3 * i, 0, 1000}, 100}, 0});
   }
   for (const Camera& camera : {few.camera, loaded("orthographic.json").camera, loaded("environment.json").camera}) {
     Scene a = few, b = many;

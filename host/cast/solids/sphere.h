@@ -4,6 +4,13 @@
 
 namespace solidcast {
 
+/// fp32 needs sphere.glsl's FAR_SPHERES: farther than 16 radii.
+inline bool isFar(const Sphere& sphere, const Frame<double>& eye) {
+  Vec3<double> f = eye.relative(sphere.center);
+  double r = sphere.radius / eye.unit;
+  return dot(f, f) > 256 * r * r;
+}
+
 template <class T>
 void packEye(const Sphere& sphere, const Frame<T>& eye, T index, EyeRecord<T>& out) {
   Vec3<T> f = -eye.relative(sphere.center);
@@ -23,7 +30,7 @@ void packEye(const Sphere& sphere, const Frame<T>& eye, T index, EyeRecord<T>& o
   C = C * sigma * sigma;
   out.kind = kinds::sphere;
   out.add(eye.toCamera(C < 0 ? -f : f) * sigma, C);
-  out.add(sigma / magnitude(C), (C < 0 ? -1 : 1) / (sigma * r), index, 0);
+  out.add(sigma / magnitude(C), (C < 0 ? -1 : 1) / (sigma * r), index, sigma * sigma * r * r);
 }
 
 inline void packWorld(const Sphere& sphere, V3 origin, f128 index, RowWriter& out) {
