@@ -65,6 +65,11 @@ struct Build {
                                                          T(i.farDist), twoSided);
   }
 
+  static IntegratorPtr make(const solidcast::CustomIntegrator& i, const World<T>*, bool) {
+    throw Error(Exit::usage,
+                i.code.file + ": the CPU reference runs no GLSL, expected the integrator casting or castingdist");
+  }
+
   static CameraPtr camera(const solidcast::Camera& plain) {
     return std::visit([](const auto& c) { return make(c); }, plain);
   }
@@ -73,6 +78,9 @@ struct Build {
   }
 
   static World<T> world(const solidcast::World& plain) {
+    if (!plain.customSolids.empty())
+      throw Error(Exit::usage, plain.customSolids[0].code.file +
+                                   ": the CPU reference runs no GLSL, expected a scene without custom solids");
     std::vector<std::shared_ptr<SimpleGroup<T>>> groups(plain.groups.size());
     for (auto& group : groups) group = std::make_shared<SimpleGroup<T>>();
     std::vector<std::uint32_t> outerFirst{0};  // every group of the tree after the one that holds it

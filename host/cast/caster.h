@@ -45,6 +45,7 @@ struct CastStats {
   std::string module;
   std::vector<std::filesystem::path> files;               // that the shaders were compiled from; none: as carried
   std::size_t spirvBytes = 0, specialisedSpirvBytes = 0;  // as written, and as the driver got it
+  std::uint64_t nanColours = 0;                           // of users' own GLSL, shown in magenta
   std::string planName;                                   // of the last pass: "baked", "uniform", ...
   std::vector<std::string> plan;                          // lines: what was decided, and why
   std::vector<std::string> leftOut;                       // lines: what this scene does not need

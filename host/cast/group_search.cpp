@@ -107,7 +107,8 @@ void GroupSearch::chooseStorage(const Records& search, std::size_t worldBytes) {
 void GroupSearch::makePipeline(const Records& search, const Records& world, std::size_t viewRaws_) {
   gpu::Specialisation constants = recordConstants(program_, search, world);
   constants[viewRaws] = static_cast<std::uint32_t>(viewRaws_);
-  constants[integratorNumber] = static_cast<std::uint32_t>(scene_->integrator.index());
+  const bool radiance = job_.wanted & (RGB8 | RADIANCE);
+  constants[integratorNumber] = radiance ? static_cast<std::uint32_t>(scene_->integrator.index()) : 0;
   constants[twoSided] = job_.job.twoSided;
   constants[samples] = u(job_.samples);
   constants[wanted] = job_.wanted;

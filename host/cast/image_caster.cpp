@@ -25,28 +25,47 @@ struct ImageCaster::Impl {
   CastStats stats;
   std::vector<std::unique_ptr<Pass>> passes;
   int bandRows = 0;
+  bool customSolids = false, customColours = false;  // what the passes were made for
 
-  Impl(gpu::Device& d, const Scene& scene, const RenderJob& j, const CastOptions& options)
-      : device(d), job(j), crop(j.crop) {
+  const CastOptions options;  // passes refer to it
+
+  Impl(gpu::Device& d, const Scene& scene, const RenderJob& j, const CastOptions& o)
+      : device(d), job(j), crop(j.crop), options(o) {
     if (crop.width == 0) crop = {0, 0, job.width, job.height};
+    build(scene);
+  }
+
+  void build(const Scene& scene) {
+    passes.clear();
     const Channels& c = job.channels;
     bool radiance = c.rgb8 || c.radiance;
     bool others = c.distance || c.solid || c.normal || c.local || c.position;
     if (!radiance && !others) throw Error(Exit::usage, "render: no channel was asked for");
-    // With several samples the other channels, which are of the pixel's centre, need a pass of their own.
+    // With several samples the other channels, which are of the pixel's centre, need a pass of their own. So they do
+    // beside a user's integrator, where the method has better surfaces than it is given.
     auto addPass = [&](bool ofRadiance, bool ofOthers) {
       passes.push_back(std::make_unique<Pass>(device, scene, job, crop, options, ofRadiance, ofOthers, stats));
     };
-    if (job.samples == 1 || !others || !radiance) {
+    const bool apart = job.samples > 1 || needsCustom(scene, true) != needsCustom(scene, false);
+    if (!apart || !others || !radiance) {
       addPass(radiance, others);
     } else {
       addPass(true, false);
       addPass(false, true);
     }
+    customSolids = needsCustom(scene, false);
+    customColours = needsCustom(scene, true);
     bandRows = rowsInBudget(options.memoryBudget);
     for (auto& pass : passes) pass->makeBuffers(crop.width, bandRows);
     stats.leftOut = leftOutLines(passes.front()->program(), scene.world, job.channels);
     stats.deviceBytes = device.peakBytes();
+  }
+
+  void setScene(const Scene& scene) {
+    const bool same = customSolids == needsCustom(scene, false) && customColours == needsCustom(scene, true);
+    if (!same) build(scene);
+    else
+      for (auto& pass : passes) pass->setScene(scene);
   }
 
   int rowsInBudget(std::size_t budget) {
@@ -106,9 +125,7 @@ double ImageCaster::dispatchOnly() {
   return impl_->stats.dispatch_ms - before;
 }
 
-void ImageCaster::setScene(const Scene& scene) {
-  for (auto& pass : impl_->passes) pass->setScene(scene);
-}
+void ImageCaster::setScene(const Scene& scene) { impl_->setScene(scene); }
 
 const CastStats& ImageCaster::stats() const { return impl_->stats; }
 

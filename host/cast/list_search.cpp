@@ -104,7 +104,8 @@ void ListSearch::makePipeline() {
   constants[someGraze] = grazing_;
   constants[someFarSphere] = farSphere_;
   constants[portioned] = portioned_;
-  constants[integratorNumber] = static_cast<std::uint32_t>(scene_->integrator.index());
+  const bool radiance = job_.wanted & (RGB8 | RADIANCE);
+  constants[integratorNumber] = radiance ? static_cast<std::uint32_t>(scene_->integrator.index()) : 0;
   constants[twoSided] = job_.job.twoSided;
   constants[samples] = u(job_.samples);
   constants[wanted] = job_.wanted;

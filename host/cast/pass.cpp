@@ -1,9 +1,8 @@
 #include "host/cast/pass.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 
+#include "host/cast/planes.h"
 #include "host/cast/stopwatch.h"
 
 namespace solidcast {
@@ -28,13 +27,14 @@ Pass::Pass(gpu::Device& device, const Scene& scene, const RenderJob& job, const 
     : scene_(&scene), job_(job), device_(device), crop_(crop), stats_(stats), radiance_(radiance), others_(others) {
   const Channels& c = job.channels;
   exact_ = options.method == Method::exact;
-  surfaces_ = others && exact_ && (c.normal || c.local || c.position);
+  const bool custom = needsCustom(scene, radiance);
+  surfaces_ = others && exact_ && !custom && (c.normal || c.local || c.position);
   samples_ = radiance ? job.samples : 1;
   Program program;
   program.job = Job::pixels;
   program.method = options.method;
   program.camera = cameraNumber(scene.camera);
-  program.hits = others && !exact_ && (c.normal || c.local || c.position);
+  program.hits = others && !exact_ && !custom && (c.normal || c.local || c.position);
   std::string why;
   program.real = chooseReal(device.info(), options, Job::pixels, program.camera, why);
   stats.plan.push_back(why);
@@ -42,7 +42,12 @@ Pass::Pass(gpu::Device& device, const Scene& scene, const RenderJob& job, const 
   if (others && (c.distance || surfaces_)) wanted_ |= DISTANCE;
   if (others && (c.solid || surfaces_)) wanted_ |= SOLID;
   if (program.hits) wanted_ |= NORMAL * c.normal | LOCAL * c.local | POSITION * c.position;
+  const bool eightBits = wanted_ & RGB8;
+  if (custom) wanted_ = DISTANCE | SOLID;
   search_ = makeSearch({device, job, options, crop, program, wanted_, samples_, stats}, scene);
+  if (custom)
+    custom_ = std::make_unique<CustomStage>(
+        CustomStage::Job{device, job, options, crop, radiance, eightBits, others, samples_, stats}, scene);
   if (surfaces_) stats.plan.push_back("normals, local coordinates, points: in binary128 on the host, as exact asks");
 }
 
@@ -50,37 +55,56 @@ void Pass::setScene(const Scene& scene) {
   scene_ = &scene;
   second_.reset();
   search_->setScene(scene);
+  if (custom_) custom_->setScene(scene);
 }
 
+/// Of a pixel, on the device.
+std::size_t Pass::words() const { return custom_ ? CustomStage::hitWords + custom_->colourWords() : wordsOf(wanted_); }
+
 std::size_t Pass::bytesPerRow(int width) const {
-  return static_cast<std::size_t>(padded(width, groupWidth)) * (wordsOf(wanted_) * 4 + search_->bytesPerPixel()) +
-         u(width) / 2;
+  return static_cast<std::size_t>(padded(width, groupWidth)) * (words() * 4 + search_->bytesPerPixel()) + u(width) / 2;
 }
 
 void Pass::makeBuffers(int width, int rows) {
   stride_ = padded(width, groupWidth);
   std::size_t pixels = static_cast<std::size_t>(stride_) * u(padded(rows, groupRows));
-  image_ = device_.makeBuffer(std::max<std::size_t>(16, pixels * wordsOf(wanted_) * 4), gpu::BufferUse::readback);
+  const std::size_t own = custom_ ? CustomStage::hitWords : wordsOf(wanted_);
+  image_ = device_.makeBuffer(std::max<std::size_t>(16, pixels * own * 4), gpu::BufferUse::readback);
+  if (custom_) custom_->makeBuffers(pixels);
   if (exact_) makeDoubts(pixels / 16 + 4096);
+}
+
+PassTarget Pass::target(const Band& band) const {
+  return {image_, exact_ ? &doubts_ : nullptr, stride_, padded(band.rows, groupRows)};
+}
+
+double Pass::dispatchSample(const Band& band, int sample) {
+  if (exact_) doubts_.as<std::uint32_t>()[0] = 0;
+  return search_->dispatch(target(band), band, sample);
 }
 
 void Pass::dispatch(const Band& band) {
   const auto count = static_cast<std::size_t>(samples_) * u(samples_);
   if (doubtful_.size() < count) doubtful_.resize(count);
   for (std::size_t sample = 0; sample < count; ++sample) {
-    if (exact_) doubts_.as<std::uint32_t>()[0] = 0;
-    const PassTarget target{image_, exact_ ? &doubts_ : nullptr, stride_, padded(band.rows, groupRows)};
-    search_->prepare(target, band);
+    search_->prepare(target(band), band);
     Stopwatch watch;
-    double ms = search_->dispatch(target, band, static_cast<int>(sample));
+    double ms = dispatchSample(band, static_cast<int>(sample));
+    if (exact_ && custom_ && doubts_.as<std::uint32_t>()[0] > capacity_) {  // as in run(), but before the stage
+      makeDoubts(doubts_.as<std::uint32_t>()[0]);
+      ms += dispatchSample(band, static_cast<int>(sample));
+    }
+    if (exact_ && doubts_.as<std::uint32_t>()[0] <= capacity_)
+      doubtful_[sample] = doubtfulPixels(doubts_.as<std::uint32_t>().subspan(2, doubts_.as<std::uint32_t>()[0]), band);
+    if (custom_) {
+      settleDoubts(band, sample);
+      ms += custom_->dispatch(image_, stride_, padded(band.rows, groupRows), band, static_cast<int>(sample));
+    }
     if (!warm_) stats_.first_dispatch_ms += watch.ms();
     warm_ = true;
     stats_.dispatch_ms += ms;
     stats_.rays += static_cast<std::uint64_t>(band.width) * u(band.rows);
-    if (!exact_) continue;
-    auto doubts = doubts_.as<std::uint32_t>();
-    if (doubts[0] > capacity_) return;
-    doubtful_[sample] = doubtfulPixels(doubts.subspan(2, doubts[0]), band);
+    if (exact_ && doubts_.as<std::uint32_t>()[0] > capacity_) return;
   }
 }
 
@@ -94,12 +118,12 @@ void Pass::run(Band& band) {
   read(band);
   stats_.readback_ms += reading.ms();
   Stopwatch finishing;
-  if (exact_) secondPass(band);
+  if (exact_ && !custom_) secondPass(band);
   if (samples_ > 1) {
     float n = static_cast<float>(samples_ * samples_);
     for (float& v : band.radiance) v /= n;
   }
-  if (radiance_ && job_.channels.rgb8 && !(wanted_ & RGB8)) {
+  if (radiance_ && job_.channels.rgb8 && band.rgb8.empty()) {
     band.rgb8.resize(band.radiance.size());
     std::transform(band.radiance.begin(), band.radiance.end(), band.rgb8.begin(), toLevel);
   }
@@ -128,36 +152,29 @@ std::vector<std::uint32_t> Pass::doubtfulPixels(std::span<const std::uint32_t> e
   return pixels;
 }
 
-template <class T>
-void Pass::readPlanes(const std::uint32_t*& plane, int count, const Band& band, std::vector<T>& to) const {
-  const auto words = static_cast<std::size_t>(stride_) * u(padded(band.rows, groupRows));
-  to.resize(static_cast<std::size_t>(band.width) * u(band.rows) * u(count));
-  for (int c = 0; c < count; ++c, plane += words)
-    for (int y = 0; y < band.rows; ++y) {
-      const std::uint32_t* row = plane + static_cast<std::size_t>(y) * u(stride_);
-      T* out = to.data() + (static_cast<std::size_t>(y) * u(band.width)) * u(count) + c;
-      for (int x = 0; x < band.width; ++x) out[static_cast<std::size_t>(x) * u(count)] = std::bit_cast<T>(row[x]);
-    }
-}
-
 void Pass::read(Band& band) const {
-  const std::uint32_t* plane = image_.as<std::uint32_t>().data();
-  if (wanted_ & RGB8) {
-    band.rgb8.resize(static_cast<std::size_t>(band.width) * u(band.rows) * 3);
-    std::uint8_t *out = band.rgb8.data(), *const last = out + band.rgb8.size() - 3;
-    for (int y = 0; y < band.rows; ++y) {
-      const std::uint32_t* row = plane + static_cast<std::size_t>(y) * u(stride_);
-      // Four bytes at a time; the fourth is where the next pixel begins. Three stores a pixel take three times as long.
-      for (int x = 0; x < band.width; ++x, out += 3) std::memcpy(out, row + x, out == last ? 3 : 4);
-    }
-    plane += static_cast<std::size_t>(stride_) * u(padded(band.rows, groupRows));
+  const int rows = padded(band.rows, groupRows);
+  if (custom_) {
+    custom_->read(image_, stride_, rows, band);
+    return;
   }
-  if (wanted_ & RADIANCE) readPlanes(plane, 3, band, band.radiance);
-  if (wanted_ & DISTANCE) readPlanes(plane, 1, band, band.distance);
-  if (wanted_ & SOLID) readPlanes(plane, 1, band, band.solid);
-  if (wanted_ & NORMAL) readPlanes(plane, 3, band, band.normal);
-  if (wanted_ & LOCAL) readPlanes(plane, 3, band, band.local);
-  if (wanted_ & POSITION) readPlanes(plane, 3, band, band.position);
+  const std::uint32_t* plane = image_.as<std::uint32_t>().data();
+  const auto words = static_cast<std::size_t>(stride_) * u(rows);
+  const auto channel = [&](std::uint32_t bit, int count, auto& to) {
+    if (!(wanted_ & bit)) return;
+    readPlanes(plane, words, stride_, count, band, to);
+    plane += words * u(count);
+  };
+  if (wanted_ & RGB8) {
+    readLevels(plane, stride_, band, band.rgb8);
+    plane += words;
+  }
+  channel(RADIANCE, 3, band.radiance);
+  channel(DISTANCE, 1, band.distance);
+  channel(SOLID, 1, band.solid);
+  channel(NORMAL, 3, band.normal);
+  channel(LOCAL, 3, band.local);
+  channel(POSITION, 3, band.position);
 }
 
 }  // namespace solidcast

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "host/cast/custom_stage.h"
 #include "host/cast/program.h"
 #include "host/cast/second_pass.h"
 
@@ -77,12 +78,14 @@ class Pass {
   void run(Band& band);
 
  private:
+  std::size_t words() const;
   void makeDoubts(std::size_t capacity);
   std::vector<std::uint32_t> doubtfulPixels(std::span<const std::uint32_t> entries, const Band& band) const;
-  template <class T>
-  void readPlanes(const std::uint32_t*& plane, int count, const Band& band, std::vector<T>& to) const;
   void read(Band& band) const;
+  PassTarget target(const Band& band) const;
+  double dispatchSample(const Band& band, int sample);
   void secondPass(Band& band);  // pass_doubts.cpp
+  void settleDoubts(const Band& band, std::size_t sample);
   RayQ rayOf(const PixelRays& rays, const Band& band, std::size_t pixel, std::size_t sample) const;
   void fillSurfaces(Band& band, const PixelRays& rays);
 
@@ -95,6 +98,7 @@ class Pass {
   int samples_ = 1, stride_ = 0;
   std::uint32_t wanted_ = 0, capacity_ = 0;
   std::unique_ptr<PixelSearch> search_;
+  std::unique_ptr<CustomStage> custom_;  // then image_ holds its planes, of which the search fills the first two
   gpu::Buffer image_, doubts_;
   std::vector<std::vector<std::uint32_t>> doubtful_;  // by sample: pixels of the band
   std::optional<SecondPass> second_;

@@ -75,6 +75,24 @@ void Pass::secondPass(Band& band) {
   if (surfaces_) fillSurfaces(band, rays);
 }
 
+/// Before users' own GLSL comes to see the hits: those in doubt are put right where the search left them.
+void Pass::settleDoubts(const Band& band, std::size_t sample) {
+  if (!exact_ || doubtful_[sample].empty()) return;
+  if (!second_) second_.emplace(scene_->world);
+  const PixelRays rays(*scene_, job_.width, job_.height, samples_);
+  const auto& list = doubtful_[sample];
+  stats_.fallbackRays += list.size();
+  auto planes = image_.as<std::uint32_t>();
+  const std::size_t words = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(padded(band.rows, groupRows));
+  const auto width = static_cast<std::size_t>(band.width);
+  inParallel(list.size(), [&](std::size_t i) {
+    const std::size_t pixel = list[i], at = pixel / width * static_cast<std::size_t>(stride_) + pixel % width;
+    const ExactHit hit = second_->cast(rayOf(rays, band, pixel, sample));
+    planes[at] = bits(hit ? static_cast<float>(hit.t) : std::numeric_limits<float>::infinity());
+    planes[words + at] = static_cast<std::uint32_t>(hit.index);
+  });
+}
+
 void Pass::fillSurfaces(Band& band, const PixelRays& rays) {
   const Channels& c = job_.channels;
   std::size_t pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.rows);

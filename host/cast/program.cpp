@@ -103,6 +103,16 @@ gpu::CompiledModule programModule(const Program& program, const CastOptions& opt
                       program.defines(), {folder});
 }
 
+gpu::CompiledModule stageModule(const std::string& name, int camera, const CastOptions& options) {
+  if (options.shaderFolder.empty()) {
+    auto words = gpu::carriedModule(name);
+    return {{words.begin(), words.end()}, {}};
+  }
+  const std::filesystem::path folder = options.shaderFolder;
+  const std::string file = name.substr(0, name.find('_')) + ".comp";
+  return gpu::compile(folder / "custom" / file, {{"CAMERA", std::to_string(camera)}}, {folder});
+}
+
 std::vector<std::string> leftOutLines(const Program& program, const World& world, const Channels& channels) {
   std::vector<std::string> lines;
   std::array<bool, kindCount> there{};

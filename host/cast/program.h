@@ -67,6 +67,9 @@ float doubtOf(const Program& program);
 /// The program: carried in the binary (no files), or compiled now from options.shaderFolder.
 gpu::CompiledModule programModule(const Program& program, const CastOptions& options);
 
+/// The same for a module of shaders/custom.
+gpu::CompiledModule stageModule(const std::string& name, int camera, const CastOptions& options);
+
 /// Kinds of solids, buffers and outputs that this scene does without, for --stats.
 std::vector<std::string> leftOutLines(const Program& program, const World& world, const Channels& channels);
 

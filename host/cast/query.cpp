@@ -64,6 +64,9 @@ struct QueryCaster::Impl {
   void setWorld(const World& w) {
     Stopwatch flattening;
     world = &w;
+    if (!w.customSolids.empty())
+      throw Error(Exit::usage, w.customSolids[0].code.file +
+                                   ": free rays are not cast at custom solids, expected a scene without them");
     const PlanFacts facts = planFacts(device.info(), w, program, blockRays, options);
     const PlanChoice choice = choosePlan(facts, options.plan);
     Program next = program;

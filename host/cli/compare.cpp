@@ -143,6 +143,7 @@ Result compareFiles(const Compare& compare, std::optional<DifferencePicture>& pi
 Result compareScene(const Compare& compare, std::optional<DifferencePicture>& picture) {
   Scene scene = loadWithWarnings(compare.inputs[0]);
   apply(compare.image, scene);
+  keepToTheReference(scene);
   Channels channels;
   channels.rgb8 = channels.distance = channels.solid = true;
   const RenderJob job = makeJob(compare.image, scene, channels);

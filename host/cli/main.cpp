@@ -107,6 +107,7 @@ int run(int argc, char** argv) {
   addStudy(app);
   addBench(app);
   addWatch(app);
+  addShader(app);
   try {
     checkVerb(app, argc, argv);
     std::vector<std::string> words = withLeftOutValues({argv + 1, argv + argc});

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <thread>
 
 #include "host/cast/plan.h"
@@ -74,10 +75,17 @@ std::pair<int, int> parsePixel(const std::string& option, const std::string& tex
 }
 
 void addImageOptions(CLI::App& verb, ImageOptions& options) {
-  addChoice<std::string>(verb, "--integrator", options.integrator,
-                         {{"casting", "casting"}, {"castingdist", "castingdist"}},
-                         "what a hit looks like: its cosine, or the cosine times a colour by distance with the scene's "
-                         "parameters (default: as the scene says)");
+  const auto setIntegrator = [&options](const std::string& given) {
+    if (given != "casting" && given != "castingdist" && given != "custom" && !given.ends_with(".glsl"))
+      throw Error(Exit::usage,
+                  "--integrator: \"" + given + "\" is unknown, expected casting|castingdist|custom or a file *.glsl");
+    options.integrator = given;
+  };
+  verb.add_option_function<std::string>(
+          "--integrator", setIntegrator,
+          "what a hit looks like: its cosine, the cosine times a colour by distance, the scene's own GLSL, or that of "
+          "a file *.glsl, with the scene's parameters (default: as the scene says)")
+      ->type_name("casting|castingdist|custom");
   verb.add_option_function<std::string>(
           "--size",
           [&options](const std::string& text) { std::tie(options.width, options.height) = parseSize("--size", text); },
@@ -200,10 +208,33 @@ void apply(const ImageOptions& options, Scene& scene) {
                                    "\"castingdist\": {near_color, near_dist, far_color, far_dist}");
     scene.integrator = *scene.distParameters;
   }
+  const bool file = options.integrator.ends_with(".glsl");
+  if (options.integrator == "custom" || file) {
+    if (!file && !scene.customIntegrator)
+      throw Error(Exit::usage, scene.file +
+                                   ": the scene names no GLSL for --integrator custom, expected "
+                                   "{\"type\": \"custom\", \"glsl\": FILE} in its list of integrators");
+    CustomIntegrator custom = scene.customIntegrator.value_or(CustomIntegrator{});
+    // World's names count from the scene's folder, the command line's from the current one.
+    if (file) {
+      const auto folder = std::filesystem::path(scene.file).parent_path();
+      custom.code.file = std::filesystem::proximate(options.integrator, folder.empty() ? "." : folder).string();
+    }
+    scene.integrator = custom;
+  }
   if (options.width > 0) {
     scene.width = options.width;
     scene.height = options.height;
   }
+}
+
+void keepToTheReference(Scene& scene) {
+  if (!scene.world.customSolids.empty())
+    throw Error(Exit::usage, scene.file + ": " + solidName(scene.world, std::uint32_t(scene.world.solids.size())) +
+                                 " is a custom solid, which the reference does not know, expected none in the scene");
+  if (!std::holds_alternative<CustomIntegrator>(scene.integrator)) return;
+  note("the reference runs no GLSL: looked at is what was hit, with the integrator casting");
+  scene.integrator = RayCastingIntegrator{};
 }
 
 RenderJob makeJob(const ImageOptions& options, const Scene& scene, const Channels& channels) {

@@ -22,7 +22,7 @@ enum class Backend { gpu, cpu };
 
 /// What a picture of a scene can be asked for; every default leaves the scene as its file says.
 struct ImageOptions {
-  std::string integrator;     // "casting", "castingdist"; "" = the scene's
+  std::string integrator;     // "casting", "castingdist", "custom", a file *.glsl; "" = the scene's
   int width = 0, height = 0;  // 0 = the scene's
   int samples = 1;            // a samples x samples grid in the pixel
   bool twoSided = false;      // on where the scene or the option says so
@@ -69,6 +69,10 @@ Scene loadWithWarnings(const std::string& file);
 
 /// The scene with integrator and size replaced as asked; opening angles stay.
 void apply(const ImageOptions& options, Scene& scene);
+
+/// For comparing with the reference, which runs no GLSL: a user's own integrator gives way to casting, with a note; custom
+/// solids are refused. Throws Error(Exit::usage).
+void keepToTheReference(Scene& scene);
 
 /// The job for `scene`, after apply(). Throws Error(Exit::usage) for a crop outside the image.
 RenderJob makeJob(const ImageOptions& options, const Scene& scene, const Channels& channels);

@@ -23,6 +23,7 @@ void explain(const CLI::App& verb, const std::vector<const char*>& useless, cons
       throw Error(Exit::usage, std::string(option) + ": has no meaning beside --pixel, expected one of them alone");
   Scene scene = loadWithWarnings(file);
   apply(image, scene);
+  keepToTheReference(scene);
   const RenderJob job = makeJob(image, scene, {});
   const auto [x, y] = pixel;
   explain::checkPixel(job, x, y);  // before a device is opened

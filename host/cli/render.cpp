@@ -174,11 +174,13 @@ void run(const CLI::App& verb, Render render) {
   stats.frames_ms = sinceProcessStart() - beforeFrames;
   bar.reset();
   if (stats.frames > 1) note(frameRate(stats.frames, stats.frames_ms));
+  if (stats.cast.nanColours > 0)
+    note("warning: " + std::to_string(stats.cast.nanColours) + " colours are not a number, shown in magenta");
   printPlan(render.casting, stats.cast);
   if (!render.stats && !render.json) return;
   const gpu::Device* device = caster.device();
   stats.scene = scene.file;
-  stats.solids = scene.world.solids.size();
+  stats.solids = scene.world.solids.size() + scene.world.customSolids.size();
   stats.deviceName = device ? device->info().name : cpuName(render.casting.precision);
   stats.driver = device ? device->info().driver + " " + device->info().driverInfo : "";
   stats.instance_ms = device ? device->instanceMilliseconds() : 0;

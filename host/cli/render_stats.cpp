@@ -39,6 +39,7 @@ std::vector<std::pair<const char*, std::uint64_t>> counts(const RenderStats& s) 
   return {{"solids", s.solids},
           {"rays", s.cast.rays},
           {"fallback_rays", s.cast.fallbackRays},
+          {"nan_colours", s.cast.nanColours},
           {"device_bytes", s.cast.deviceBytes},
           {"device_bytes_peak", s.deviceBytesPeak},
           {"host_bytes_peak", hostBytesPeak()},

@@ -16,5 +16,6 @@ void addGenerate(CLI::App& app);
 void addStudy(CLI::App& app);
 void addBench(CLI::App& app);
 void addWatch(CLI::App& app);
+void addShader(CLI::App& app);
 
 }  // namespace solidcast::cli

@@ -80,6 +80,7 @@ class Runner {
 struct Device::Impl {
   std::shared_ptr<Core> core;
   Runner runner;
+  ModuleWatcher watcher = {};
 };
 
 }  // namespace solidcast::gpu

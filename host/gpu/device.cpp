@@ -90,6 +90,7 @@ Device::~Device() = default;
 const DeviceInfo& Device::info() const { return impl_->core->info; }
 bool Device::validationActive() const { return impl_->core->instance.validating(); }
 int Device::validationMessages() const { return impl_->core->instance.messages(); }
+void Device::watchModules(ModuleWatcher watcher) { impl_->watcher = std::move(watcher); }
 std::uint64_t Device::bytesAllocated() const { return impl_->core->bytesAllocated; }
 std::uint64_t Device::peakBytes() const { return impl_->core->peakBytes; }
 double Device::instanceMilliseconds() const { return impl_->core->instance.milliseconds(); }

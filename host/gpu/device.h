@@ -109,7 +109,14 @@ class Device {
   /// A workgroup beyond the device's limits throws Exit::noDevice with both numbers; SPIR-V that is no compute module
   /// Exit::shader.
   /// The driver gets the module specialised: without the code and bindings that the constants rule out.
-  Pipeline makePipeline(std::span<const std::uint32_t> whole, const Specialisation& specialisation = {});
+  /// `name` is for whoever watches modules.
+  Pipeline makePipeline(std::span<const std::uint32_t> whole, const Specialisation& specialisation = {},
+                        const std::string& name = "");
+
+  /// From now on `watcher` sees every module that a pipeline is made of: whole, and the very words the driver gets.
+  using ModuleWatcher = std::function<void(const std::string& name, std::span<const std::uint32_t> whole,
+                                           std::span<const std::uint32_t> given)>;
+  void watchModules(ModuleWatcher watcher);
 
   /// Runs the dispatches in order, each after the writes of the one before; waits for the end.
   /// Returns GPU time in ms by timestamps (wall time where there are none). Push constants may be longer than the

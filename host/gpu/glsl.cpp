@@ -30,12 +30,13 @@ std::string readFile(const fs::path& file) {
 /// `local` place first (`#include "x"` alone), and for the `system` places where that gave nothing.
 class Includer : public glslang::TShader::Includer {
  public:
-  Includer(const std::vector<fs::path>& folders, std::vector<fs::path>& files) : folders_(folders), files_(files) {}
+  Includer(const Includes& rules, std::vector<fs::path>& files) : rules_(rules), files_(files) {}
 
   /// Places where nothing was found: a file that appears there changes what is included.
   const std::vector<fs::path>& missing() const { return missing_; }
 
   IncludeResult* includeLocal(const char* header, const char* includer, size_t depth) override {
+    if (const auto given = rules_.given.find(header); given != rules_.given.end()) return edited(given->second);
     const fs::path beside = fs::path(includer).parent_path();
     looked_ = beside.empty() ? std::string(".") : beside.string();
     return depth > deepest ? nullptr : found(beside / header);
@@ -43,7 +44,7 @@ class Includer : public glslang::TShader::Includer {
 
   IncludeResult* includeSystem(const char* header, const char*, size_t depth) override {
     if (depth > deepest) return failed("nested deeper than 64 files, perhaps a file includes itself;");
-    for (const fs::path& folder : folders_) {
+    for (const fs::path& folder : rules_.folders) {
       if (IncludeResult* result = found(folder / header)) return result;
       looked_ += (looked_.empty() ? "" : ", ") + folder.string();
     }
@@ -66,7 +67,10 @@ class Includer : public glslang::TShader::Includer {
       return nullptr;
     }
     if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
-    return made(file.string(), readFile(file));
+    return edited({file.string(), readFile(file)});
+  }
+  IncludeResult* edited(const SourceText& source) const {
+    return made(source.name, rules_.edit ? rules_.edit(source) : source.text);
   }
   /// glslang takes a result without a name for an error message; it adds "for header name: x".
   static IncludeResult* failed(const std::string& message) { return made("", message); }
@@ -78,7 +82,7 @@ class Includer : public glslang::TShader::Includer {
     return result;
   }
 
-  const std::vector<fs::path>& folders_;
+  const Includes& rules_;
   std::vector<fs::path>& files_;
   std::vector<fs::path> missing_;
   std::string looked_;  // for the message
@@ -121,8 +125,7 @@ std::string reshaped(const std::string& log, const std::string& name) {
 
 }  // namespace
 
-CompiledModule compileText(const std::string& text, const std::string& name, const Defines& defines,
-                           const std::vector<fs::path>& folders) {
+CompiledModule compileText(const SourceText& source, const Defines& defines, const Includes& includes) {
   struct Process {
     Process() { glslang::InitializeProcess(); }
     ~Process() { glslang::FinalizeProcess(); }
@@ -130,12 +133,13 @@ CompiledModule compileText(const std::string& text, const std::string& name, con
   static const Process process;
 
   CompiledModule module;
-  Includer includer(folders, module.files);
+  Includer includer(includes, module.files);
+  const std::string& name = source.name;
   std::string preamble;
   for (const auto& [macro, value] : defines) preamble += "#define " + macro + " " + value + "\n";
 
   glslang::TShader shader(EShLangCompute);
-  const char* const texts[] = {text.c_str()};
+  const char* const texts[] = {source.text.c_str()};
   const char* const names[] = {name.c_str()};
   shader.setStringsWithLengthsAndNames(texts, nullptr, names, 1);
   shader.setPreamble(preamble.c_str());
@@ -157,6 +161,11 @@ CompiledModule compileText(const std::string& text, const std::string& name, con
   options.disableOptimizer = true;
   glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), module.spirv, &options);
   return module;
+}
+
+CompiledModule compileText(const std::string& text, const std::string& name, const Defines& defines,
+                           const std::vector<fs::path>& folders) {
+  return compileText({name, text}, defines, {folders, {}});
 }
 
 CompiledModule compile(const fs::path& file, const Defines& defines, const std::vector<fs::path>& folders) {

@@ -78,7 +78,8 @@ Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 Pipeline::~Pipeline() = default;
 
-Pipeline Device::makePipeline(std::span<const std::uint32_t> whole, const Specialisation& specialisation) {
+Pipeline Device::makePipeline(std::span<const std::uint32_t> whole, const Specialisation& specialisation,
+                              const std::string& name) {
   const Core& core = *impl_->core;
   auto impl = std::make_unique<Pipeline::Impl>();
   impl->core = impl_->core;
@@ -88,6 +89,7 @@ Pipeline Device::makePipeline(std::span<const std::uint32_t> whole, const Specia
   impl->spirvBytes = spirv.size() * sizeof spirv[0];
   const ShaderInterface& shader = impl->interface;
   requireDeviceCan(core, shader);
+  if (impl_->watcher) impl_->watcher(name, whole, spirv);
 
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const auto& binding : shader.bindings) {

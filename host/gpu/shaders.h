@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -40,6 +41,17 @@ CompiledModule compile(const std::filesystem::path& file, const Defines& defines
 /// The same from text; `name` stands for the file in messages.
 CompiledModule compileText(const std::string& text, const std::string& name, const Defines& defines,
                            const std::vector<std::filesystem::path>& folders = {});
+
+struct SourceText {
+  std::string name, text;  // the name stands for the file in messages
+};
+/// Where included texts come from, and what is done to them.
+struct Includes {
+  std::vector<std::filesystem::path> folders;
+  std::map<std::string, SourceText> given;                  // by header, in place of a file
+  std::function<std::string(const SourceText&)> edit = {};  // every included text is what this makes of it
+};
+CompiledModule compileText(const SourceText& source, const Defines& defines, const Includes& includes);
 
 /// The module as the driver gets it (Device::makePipeline() calls this): constants set and folded, dead branches,
 /// functions and buffers gone. Takes well under a millisecond.

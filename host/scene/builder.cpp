@@ -126,6 +126,13 @@ void SceneBuilder::finishSolid(Level& solid) {
       finishMesh(fields);
       return;
     }
+    if (fields.text("type") == "custom") {
+      const CustomSolid custom = readCustomSolid(fields);
+      names_.add(custom.name, numbered("custom ", world.customSolids.size()), fields.where("name"));
+      world.customSolids.push_back(custom);
+      ++levels_.back().index;
+      return;
+    }
     const Shape shape = readSolid(fields, warnings_);
     const std::string name = readName(fields);
     names_.add(name, kindName(shape) + numbered(" ", world.solids.size()), fields.where("name"));

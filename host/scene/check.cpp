@@ -72,6 +72,7 @@ void checkScene(const Scene& scene, std::vector<std::string>& warnings) {
       report(found);
       names.add(solid.name, kindName(solid.shape) + numbered(" ", i), "");
     }
+    for (const CustomSolid& custom : scene.world.customSolids) names.add(custom.name, "custom", "");
     for (std::size_t i = 0; i < scene.world.groups.size(); ++i) {
       place = numbered("group ", i);
       names.add(scene.world.groups[i].name, place, "");
@@ -87,6 +88,10 @@ const char* kindName(const Shape& shape) {
 }
 
 std::string solidName(const World& world, std::uint32_t index) {
+  if (index >= world.solids.size()) {
+    const CustomSolid& custom = world.customSolids[index - world.solids.size()];
+    return custom.name.empty() ? numbered("custom ", index) : custom.name;
+  }
   const SolidEntry& solid = world.solids[index];
   return solid.name.empty() ? kindName(solid.shape) + numbered(" ", index) : solid.name;
 }

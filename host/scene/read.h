@@ -15,6 +15,10 @@ struct MeshSolid {
 };
 MeshSolid readMeshSolid(const Fields& fields);
 
+/// "glsl" and "parameters" of {"type": "custom", ...}, be it an integrator or a solid.
+CustomCode readCustomCode(const Fields& fields);
+CustomSolid readCustomSolid(const Fields& fields);
+
 /// Types that may stand in a list of solids, groups and meshes included.
 Names solidTypes();
 

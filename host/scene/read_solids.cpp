@@ -115,7 +115,7 @@ constexpr SolidReader kReaders[] = {{"sphere", readSphere},  {"infinite_plane", 
 }  // namespace
 
 Names solidTypes() {
-  Names names = {"group", "mesh"};
+  Names names = {"group", "mesh", "custom"};
   for (const SolidReader& reader : kReaders) names.push_back(reader.type);
   return names;
 }

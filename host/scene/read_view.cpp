@@ -1,3 +1,6 @@
+#include <iterator>
+#include <utility>
+
 #include "host/scene/read.h"
 
 namespace solidcast {
@@ -34,10 +37,14 @@ Camera readCameraFields(const Fields& fields) {
 }
 
 Integrator readIntegrator(const Fields& fields) {
-  const std::string type = fields.choice("type", "integrator", {"casting", "castingdist"});
+  const std::string type = fields.choice("type", "integrator", {"casting", "castingdist", "custom"});
   if (type == "casting") {
     fields.onlyKeys({"type"});
     return RayCastingIntegrator{};
+  }
+  if (type == "custom") {
+    fields.onlyKeys({"type", "glsl", "parameters"});
+    return CustomIntegrator{readCustomCode(fields)};
   }
   fields.onlyKeys({"type", "near_color", "near_dist", "far_color", "far_dist"});
   const RayCastingDistIntegrator integrator{fields.triple("near_color"), fields.number("near_dist"),
@@ -50,16 +57,16 @@ Integrator readIntegrator(const Fields& fields) {
 void readIntegrators(const Json& value, const std::string& where, Scene& scene) {
   const bool single = !value.is_array();
   if (!single && value.empty()) throw Fault{where, "the list is empty, expected at least one integrator"};
-  bool castingSeen = false;
+  constexpr const char* types[] = {"casting", "castingdist", "custom"};
+  bool seen[std::size(types)] = {};
   for (std::size_t i = 0; i < (single ? 1 : value.size()); ++i) {
     const std::string place = single ? where : where + numbered("/", i);
     const Integrator integrator = readIntegrator(Fields(single ? value : value[i], place));
-    const auto* dist = std::get_if<RayCastingDistIntegrator>(&integrator);
-    if (dist ? scene.distParameters.has_value() : castingSeen)
-      throw Fault{place, std::string("a second integrator of type ") + (dist ? "castingdist" : "casting") +
-                             ", expected each type once"};
-    if (dist) scene.distParameters = *dist;
-    else castingSeen = true;
+    if (std::exchange(seen[integrator.index()], true))
+      throw Fault{
+          place, std::string("a second integrator of type ") + types[integrator.index()] + ", expected each type once"};
+    if (const auto* dist = std::get_if<RayCastingDistIntegrator>(&integrator)) scene.distParameters = *dist;
+    if (const auto* custom = std::get_if<CustomIntegrator>(&integrator)) scene.customIntegrator = *custom;
     if (i == 0) scene.integrator = integrator;
   }
 }

@@ -52,6 +52,26 @@ struct Quadric {
   bool operator==(const Quadric&) const = default;
 };
 
+/// A number or three numbers that a scene gives to users' own GLSL.
+struct GlslParameter {
+  std::string name;  // as GLSL takes it
+  std::variant<double, Triple> value;
+  bool operator==(const GlslParameter&) const = default;
+};
+/// A user's GLSL file (docs/custom-glsl.md).
+struct CustomCode {
+  std::string file;                       // from the scene file's folder
+  std::vector<GlslParameter> parameters;  // by name
+  bool operator==(const CustomCode&) const = default;
+};
+/// A solid in a user's own GLSL. No Shape: nothing here knows what it is, neither the proofs nor the reference.
+struct CustomSolid {
+  std::string name;  // unique in the scene; may be empty
+  CustomCode code;
+  std::optional<std::array<Triple, 2>> bounds;  // least and greatest corner; only what lies inside is seen
+  bool operator==(const CustomSolid&) const = default;
+};
+
 using Shape = std::variant<InfinitePlane, AABox, Sphere, Disc, Triangle, Quad, Quadric>;
 
 struct SolidEntry {
@@ -79,6 +99,7 @@ struct GroupEntry {
 struct World {
   std::vector<SolidEntry> solids;
   std::vector<GroupEntry> groups{GroupEntry{}};  // groups[0] is the root
+  std::vector<CustomSolid> customSolids;         // in no group; their indices go on after those of `solids`
   bool operator==(const World&) const = default;
 };
 
@@ -122,7 +143,13 @@ struct RayCastingDistIntegrator {
   bool operator==(const RayCastingDistIntegrator&) const = default;
 };
 
-using Integrator = std::variant<RayCastingIntegrator, RayCastingDistIntegrator>;
+/// A user's own: see CustomCode.
+struct CustomIntegrator {
+  CustomCode code;
+  bool operator==(const CustomIntegrator&) const = default;
+};
+
+using Integrator = std::variant<RayCastingIntegrator, RayCastingDistIntegrator, CustomIntegrator>;
 
 struct Scene {
   std::string file;  // where it came from, for messages
@@ -131,7 +158,8 @@ struct Scene {
   Integrator integrator = RayCastingIntegrator{};
   /// What `--integrator castingdist` takes, whichever integrator the scene chooses; nothing: the scene has no such numbers.
   std::optional<RayCastingDistIntegrator> distParameters;
-  bool twoSided = false;  // |d.n| instead of max(0, -d.n)
+  std::optional<CustomIntegrator> customIntegrator;  // the same for `--integrator custom`, with parameters for any file
+  bool twoSided = false;                             // |d.n| instead of max(0, -d.n)
   World world;
   bool operator==(const Scene&) const = default;
 };

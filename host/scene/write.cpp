@@ -54,24 +54,49 @@ std::string fields(const EnvironmentCamera& c) {
          member("horizontal_angle", c.horizontalAngle);
 }
 
-std::string integrators(const Scene& scene) {
-  const std::string casting = "{\"type\": \"casting\"}";
-  const auto* chosen = std::get_if<RayCastingDistIntegrator>(&scene.integrator);
-  if (!chosen && !scene.distParameters) return casting;
-  const RayCastingDistIntegrator& dist = chosen ? *chosen : *scene.distParameters;
-  const std::string castingdist = "{\"type\": \"castingdist\"" + member("near_color", dist.nearColor) +
-                                  member("near_dist", dist.nearDist) + member("far_color", dist.farColor) +
-                                  member("far_dist", dist.farDist) + "}";
-  return chosen ? castingdist : "[" + casting + ", " + castingdist + "]";
+std::string text(const std::string& value) { return nlohmann::json(value).dump(); }
+
+std::string fields(const CustomCode& code) {
+  std::string parameters = "{";
+  for (const GlslParameter& p : code.parameters)
+    parameters += (parameters.size() > 1 ? ", " : "") + text(p.name) + ": " +
+                  (p.value.index() == 0 ? shortest(std::get<0>(p.value)) : list(std::get<1>(p.value)));
+  return member("glsl", text(code.file)) + (code.parameters.empty() ? "" : member("parameters", parameters + "}"));
 }
 
-std::string nameMember(const std::string& name) {
-  return name.empty() ? "" : member("name", nlohmann::json(name).dump());
+std::string fields(const RayCastingIntegrator&) { return ""; }
+std::string fields(const RayCastingDistIntegrator& dist) {
+  return member("near_color", dist.nearColor) + member("near_dist", dist.nearDist) +
+         member("far_color", dist.farColor) + member("far_dist", dist.farDist);
 }
+std::string fields(const CustomIntegrator& custom) { return fields(custom.code); }
+
+/// The chosen one first, then the others that the scene has numbers for.
+std::string integrators(const Scene& scene) {
+  static constexpr const char* types[] = {"casting", "castingdist", "custom"};
+  std::string list;
+  const auto add = [&](const Integrator& integrator) {
+    list += (list.empty() ? "" : ", ") + std::string("{\"type\": \"") + types[integrator.index()] + "\"" +
+            std::visit([](const auto& i) { return fields(i); }, integrator) + "}";
+  };
+  add(scene.integrator);
+  const bool one = (!scene.distParameters || scene.integrator.index() == 1) &&
+                   (!scene.customIntegrator || scene.integrator.index() == 2);
+  if (scene.distParameters && scene.integrator.index() != 1) add(*scene.distParameters);
+  if (scene.customIntegrator && scene.integrator.index() != 2) add(*scene.customIntegrator);
+  return one ? list : "[" + list + "]";
+}
+
+std::string nameMember(const std::string& name) { return name.empty() ? "" : member("name", text(name)); }
 
 std::string solidLine(const SolidEntry& solid) {
   return std::string("{\"type\": \"") + kindName(solid.shape) + "\"" + nameMember(solid.name) +
          std::visit([](const auto& shape) { return fields(shape); }, solid.shape) + "}";
+}
+
+std::string bounds(const CustomSolid& solid) {
+  if (!solid.bounds) return "";
+  return ", \"bounds\": {\"min\": " + list((*solid.bounds)[0]) + member("max", (*solid.bounds)[1]) + "}";
 }
 
 /// Writes the tree with the way down on a vector: groups may nest deeper than a stack would bear.
@@ -129,6 +154,9 @@ void writeScene(const Scene& scene, std::string_view comment, const TextSink& si
   if (scene.twoSided) write(",\n  \"two_sided\": true");
   write(",\n  \"solids\": [");
   writeSolids(scene.world, write);
+  for (const CustomSolid& custom : scene.world.customSolids)
+    write(std::string(&custom == scene.world.customSolids.data() && scene.world.groups[0].members.empty() ? "" : ",") +
+          "\n    {\"type\": \"custom\"" + nameMember(custom.name) + fields(custom.code) + bounds(custom) + "}");
   write("\n  ]\n}\n");
   sink(piece);
 }

@@ -245,7 +245,9 @@ INSTANTIATE_TEST_SUITE_P(, Indexed, testing::ValuesIn(kMethods), [](const auto& 
 
 TEST_P(Indexed, BundledScenes) {
   for (const std::string& name : bundledScenes()) {
-    const Difference d = differences(device(), loaded(name).world, raysAround(1000, 3, 1), GetParam());
+    World world = loaded(name).world;
+    world.customSolids.clear();  // which free rays are not cast at
+    const Difference d = differences(device(), world, raysAround(1000, 3, 1), GetParam());
     EXPECT_EQ(d.differ, 0u) << name;
   }
 }

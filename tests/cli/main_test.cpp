@@ -6,7 +6,7 @@
 namespace solidcast::cli_test {
 namespace {
 
-const std::vector<std::string> kVerbs{"render", "compare", "query", "devices", "generate", "bench", "watch"};
+const std::vector<std::string> kVerbs{"render", "compare", "query", "devices", "generate", "bench", "watch", "shader"};
 
 TEST(Main, HelpNamesEveryVerbAndTheExitCodes) {
   const Result help = run({"--help"});

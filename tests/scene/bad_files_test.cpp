@@ -119,7 +119,8 @@ TEST(BadTop, ImageCameraIntegrator) {
       {withMember(R"("integrator": "casting")"), "/integrator: wrong type: the text \"casting\", expected an object"},
       {withMember(R"("integrator": [])"), "/integrator: the list is empty, expected at least one integrator"},
       {withMember(R"("integrator": {"type": "cast"})"),
-       "/integrator/type: unknown integrator \"cast\", expected one of casting, castingdist (the nearest is casting)"},
+       "/integrator/type: unknown integrator \"cast\", expected one of casting, castingdist, custom (the nearest is "
+       "casting)"},
       {withMember(R"("integrator": [{"type": "casting"}, {"type": "casting"}])"),
        "/integrator/1: a second integrator of type casting, expected each type once"},
       {withMember(R"("integrator": {"type": "castingdist", "near_color": [1,1,1], "near_dist": 4, )"

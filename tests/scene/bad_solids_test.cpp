@@ -20,7 +20,7 @@ const BadSolid kBadSolids[] = {
     {"noType", R"({"center": [0, 0, 0]})", R"(/0: missing field "type", expected the name of a solid)"},
     {"typeNotText", R"({"type": 3})", "/0/type: wrong type: a number, expected the name of a solid"},
     {"unknownSolid", R"({"type": "spere"})",
-     R"(/0/type: unknown solid "spere", expected one of group, mesh, sphere, infinite_plane, box, disc, triangle, quad, )"
+     R"(/0/type: unknown solid "spere", expected one of group, mesh, custom, sphere, infinite_plane, box, disc, triangle, quad, )"
      "quadric (the nearest is sphere)"},
     {"unknownKey", R"({"type": "sphere", "center": [0, 0, 0], "raduis": 1})",
      R"(/0/raduis: unknown key "raduis", expected one of type, name, center, radius (the nearest is radius))"},

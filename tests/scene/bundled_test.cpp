@@ -49,6 +49,8 @@ TEST(BundledScenes, AreAllThere) {
        {"ellipsoid", "elliptic_cone", "elliptic_paraboloid", "hyperbolic_paraboloid", "hyperboloid_one_sheet",
         "hyperboloid_two_sheets", "elliptic_cylinder", "hyperbolic_cylinder", "parabolic_cylinder"})
     expected.insert(std::string("quadrics/") + quadric);
+  for (const char* custom : {"normals", "depth", "ambient", "checker", "solids", "torus"})
+    expected.insert(std::string("custom/") + custom);
   EXPECT_EQ(names, expected);
 }
 
@@ -108,6 +110,11 @@ TEST(Schema, RefusesWhatTheLoaderRefuses) {
       withSolids(R"({"type": "quadric", "form": "cylinder", "center": [0,0,0], "radii": [1,1,1]})"),
       withSolids(R"({"type": "group"})"),
       withSolids(R"({"type": "mesh"})"),
+      withSolids(R"({"type": "custom"})"),
+      withSolids(R"({"type": "custom", "glsl": ""})"),
+      withSolids(R"({"type": "custom", "glsl": "a", "parameters": {"a": [1, 2]}})"),
+      withSolids(R"({"type": "custom", "glsl": "a", "bounds": {"min": [0, 0, 0]}})"),
+      withMember(R"("integrator": {"type": "custom"})"),
       withSolids(R"({"type": "mesh", "file": "a.ply", "scale": -1})"),
       withSolids(R"({"type": "mesh", "file": "a.ply", "rotate": [1, 0, 0]})"),
       withSolids(R"({"type": "group", "name": "", "solids": []})"),
@@ -154,9 +161,9 @@ TEST(Documentation, ExamplesAreScenes) {
       shown.insert(check(example, block));
     }
   }
-  const std::set<std::string> expected = {"scene",   "perspective", "orthographic",   "environment", "casting",
-                                          "sphere",  "castingdist", "infinite_plane", "box",         "disc",
-                                          "quadric", "triangle",    "quad",           "group",       "mesh"};
+  const std::set<std::string> expected = {
+      "scene", "perspective", "orthographic", "environment", "casting", "sphere", "castingdist", "infinite_plane",
+      "box",   "disc",        "quadric",      "triangle",    "quad",    "group",  "mesh",        "custom"};
   EXPECT_EQ(shown, expected);
 }
 
@@ -175,10 +182,11 @@ TEST(Schema, KnowsTheLoadersKeys) {
   for (const Json& solid : rules["definitions"]["solid"]["oneOf"])
     for (const auto& [key, rule] : solid["properties"].items())
       inSchema[solid["properties"]["type"]["const"]].insert(key);
-  EXPECT_EQ(inSchema.size(), 9u);
+  EXPECT_EQ(inSchema.size(), 10u);
   for (const auto& [type, keys] : inSchema) {
     std::string description = type == "group"            ? R"("solids": [])"
                               : type == "mesh"           ? R"("file": "")"
+                              : type == "custom"         ? R"("glsl": "a")"
                               : type == "infinite_plane" ? R"("points": 0)"
                                                          : R"("coefficients": 0)";
     std::set<std::string> known =

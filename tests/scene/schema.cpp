@@ -61,10 +61,14 @@ class Validator {
       return "";
     }
     if (keyword == "additionalProperties") {
-      if (rule != Json(false)) throw std::logic_error("additionalProperties is not false");
       if (!value.is_object()) return "";
-      for (const auto& [key, member] : value.items())
-        if (!schema.at("properties").contains(key)) return at + "/" + key + " " + keyword;
+      const Json known = schema.value("properties", Json::object());
+      for (const auto& [key, member] : value.items()) {
+        if (known.contains(key)) continue;
+        if (rule == Json(false)) return at + "/" + key + " " + keyword;
+        const std::string found = check(rule, member, at + "/" + key);
+        if (!found.empty()) return found;
+      }
       return "";
     }
     if (keyword == "properties") {

@@ -38,6 +38,20 @@ TEST(Write, ReadsBackTheSame) {
   EXPECT_EQ(again(scene), scene);
 }
 
+TEST(Write, CustomGlsl) {
+  const CustomCode code{"a \"b\".glsl", {{"R", 1.5}, {"colour", Triple{0.1, 2, 3}}}};
+  for (Scene scene : {Scene{}, aSolids()}) {
+    scene.customIntegrator = CustomIntegrator{code};
+    for (const Integrator& chosen : {Integrator{RayCastingIntegrator{}}, Integrator{CustomIntegrator{code}}}) {
+      scene.integrator = chosen;
+      EXPECT_EQ(again(scene), scene);
+    }
+    scene.world.customSolids.push_back({"ring", code, std::array<Triple, 2>{{{-1, -2, -3}, {1, 2, 3}}}});
+    scene.world.customSolids.push_back({"", {"c.glsl", {}}, {}});
+    EXPECT_EQ(again(scene), scene);
+  }
+}
+
 TEST(Write, GroupsAndOddNames) {
   Scene scene;
   const auto outer = addGroup(scene.world, "a \"quoted\" \\ name\n");
