@@ -9,6 +9,10 @@
 namespace solidcast {
 namespace {
 
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) \
+  static_assert(EYE_ROWS == 2 || EYE_ROWS == 4 || EYE_ROWS == 5, "Part::write knows these");
+#include "shaders/solids.def"
+#undef SOLID
 constexpr std::uint32_t eyeRowsOf[kindCount] = {
 #define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) EYE_ROWS,
 #include "shaders/solids.def"
@@ -132,20 +136,40 @@ struct ListBuilder::Part {
   void write(std::byte* rows, std::size_t rowSize, const ListGrid& grid) {
     for (const Level level : {narrow, wide})
       for (std::size_t kind = 0; kind < kindCount; ++kind) {
-        const std::size_t record = rowSize * eyeRowsOf[kind], across = level == wide ? grid.wideAcross() : grid.across;
         const auto bytes = found[level][kind].bytes();
-        std::uint32_t* next = tiles[level][kind].data();
-        for (const std::byte* at = bytes.data(); at != bytes.data() + bytes.size(); at += sizeof(Place) + record) {
-          Place place;
-          std::memcpy(&place, at, sizeof place);
-          for (std::size_t y = place.fromY; y <= place.toY; ++y)
-            for (std::size_t x = place.fromX; x <= place.toX; ++x) {
-              std::uint32_t& row = next[y * across + x];
-              std::memcpy(rows + row * rowSize, at + sizeof place, record);
-              row += eyeRowsOf[kind];
-            }
+        if (bytes.empty()) continue;
+        // Of known size, a record is copied by a few vector moves: a sixth of all the time was memcpy's.
+        const auto copy = [&]<std::size_t ROWS>() {
+          const std::size_t across = level == wide ? grid.wideAcross() : grid.across;
+          if (rowSize == 16) writeAs<16, ROWS>(bytes, rows, tiles[level][kind].data(), across);
+          else writeAs<32, ROWS>(bytes, rows, tiles[level][kind].data(), across);
+        };
+        switch (eyeRowsOf[kind]) {
+          case 2:
+            copy.template operator()<2>();
+            break;
+          case 4:
+            copy.template operator()<4>();
+            break;
+          case 5:
+            copy.template operator()<5>();
+            break;
         }
       }
+  }
+  template <std::size_t ROW_SIZE, std::size_t ROWS>
+  static void writeAs(std::span<const std::byte> from, std::byte* rows, std::uint32_t* next, std::size_t across) {
+    constexpr std::size_t record = ROW_SIZE * ROWS;
+    for (const std::byte* at = from.data(); at != from.data() + from.size(); at += sizeof(Place) + record) {
+      Place place;
+      std::memcpy(&place, at, sizeof place);
+      for (std::size_t y = place.fromY; y <= place.toY; ++y)
+        for (std::size_t x = place.fromX; x <= place.toX; ++x) {
+          std::uint32_t& row = next[y * across + x];
+          std::memcpy(rows + row * ROW_SIZE, at + sizeof place, record);
+          row += ROWS;
+        }
+    }
   }
 };
 

@@ -2,7 +2,9 @@
 #pragma once
 #include <quadmath.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <type_traits>
 
 #include "host/scene/world.h"
@@ -14,13 +16,14 @@ using f128 = __float128;
 // What the flattening alone needs is written for any number type T: double, long double or f128.
 inline f128 squareRoot(f128 x) { return sqrtq(x); }
 inline f128 magnitude(f128 x) { return fabsq(x); }
-inline f128 shifted(f128 x, int exponent) { return ldexpq(x, exponent); }  // x 2^exponent
 inline long double squareRoot(long double x) { return std::sqrt(x); }
 inline long double magnitude(long double x) { return std::fabs(x); }
-inline long double shifted(long double x, int exponent) { return std::ldexp(x, exponent); }
 inline double squareRoot(double x) { return std::sqrt(x); }
 inline double magnitude(double x) { return std::fabs(x); }
-inline double shifted(double x, int exponent) { return std::ldexp(x, exponent); }
+/// 2^exponent, for exponents of normal numbers.
+constexpr double twoTo(int exponent) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + exponent) << 52);
+}
 
 template <class T>
 struct Vec3 {

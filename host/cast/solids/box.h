@@ -46,7 +46,7 @@ std::array<bool, 3> nearFacePlane(const AABox& box, const Frame<T>& eye) {
     farthest += larger(a, b);
   }
   std::array<bool, 3> near{};
-  for (std::size_t i = 0; i < 3; ++i) near[i] = plane[i] <= shifted(farthest, -10);
+  for (std::size_t i = 0; i < 3; ++i) near[i] = plane[i] <= farthest * T(twoTo(-10));
   return near;
 }
 
@@ -69,7 +69,7 @@ void packEye(const AABox& box, const Frame<T>& eye, T index, EyeRecord<T>& out) 
   for (int i = 0; i < 3; ++i) {
     T a = (c.lo[i] - eye.origin[i]) / eye.unit, b = (c.hi[i] - eye.origin[i]) / eye.unit;
     farthest += larger(magnitude(a), magnitude(b));
-    onFace[i] = shifted(T(1), near[static_cast<std::size_t>(i)] ? -26 : 100);
+    onFace[i] = twoTo(near[static_cast<std::size_t>(i)] ? -26 : 100);
     if (a > 0 || b < 0) {
       inside = false;
       up[i] = 1 / (a > 0 ? a : b), cap[i] = 0;
@@ -80,7 +80,7 @@ void packEye(const AABox& box, const Frame<T>& eye, T index, EyeRecord<T>& out) 
       low2[i] = b == 0 ? steep : 1 / b;
       // Eye on this face: below the bound of any ray that leaves by it (the face itself is at t = 0, no hit), above
       // all others.
-      if (a == 0 || b == 0) cap[i] = shifted(steep, out.type == RealType::f64 ? -66 : -42);
+      if (a == 0 || b == 0) cap[i] = steep * twoTo(out.type == RealType::f64 ? -66 : -42);
     }
     T plane = smaller(magnitude(a), magnitude(b));
     if ((a > 0 || b < 0) && (nearest < 0 || plane < nearest)) nearest = plane;
@@ -98,7 +98,7 @@ void packEye(const AABox& box, const Frame<T>& eye, T index, EyeRecord<T>& out) 
   out.add(up, index);
   out.add(cap, inside ? 1 : 0);
   out.add(low1, steepest > 0 ? 1 / steepest : T(1));
-  out.add(low2, shifted(T(1), -26));
+  out.add(low2, T(twoTo(-26)));
   out.add(onFace, 0);
 }
 

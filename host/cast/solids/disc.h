@@ -16,7 +16,7 @@ void packEye(const Disc& disc, const Frame<T>& eye, T index, EyeRecord<T>& out) 
   out.kind = kinds::disc;
   out.add(eye.toCamera(m), -num);
   out.add(eye.toCamera(U), index);
-  out.add(eye.toCamera(V), shifted(T(1), -26) / length(m));
+  out.add(eye.toCamera(V), T(twoTo(-26)) / length(m));
   out.add(1 / (dot(m, m) + dot(U, U) + dot(V, V)), 0, 0, 0);
   out.mayGraze(num, length(f) + r);
 }

@@ -14,7 +14,7 @@ enum class RealType { f32, f64, df32 };  // ARITHMETIC 0, 1, 2 of shaders/numeri
 
 /// Unit roundoff u of the type, as numeric.glsl states it.
 inline double unitRoundoff(RealType type) {
-  return std::ldexp(1.0, type == RealType::f32 ? -24 : type == RealType::f64 ? -53 : -44);
+  return twoTo(type == RealType::f32 ? -24 : type == RealType::f64 ? -53 : -44);
 }
 /// Stands for infinity in records: BIG of numeric.glsl. Half as large a one survives a product with a direction.
 inline double bigNumber(RealType type) { return type == RealType::f64 ? 1e250 : 3e37; }
@@ -125,7 +125,7 @@ struct EyeRecord {
   /// A flat solid whose plane passes the eye at `distance` and whose farthest point is at `farthest`: the cosine is at
   /// least their ratio, and s keeps 2^-28 relative where 7u <= 2^-28 of it.
   void mayGraze(T distance, T farthest) {
-    if (magnitude(distance) < shifted(T(unitRoundoff(type)), 31) * farthest) grazing = true;
+    if (magnitude(distance) < T(unitRoundoff(type) * twoTo(31)) * farthest) grazing = true;
   }
 };
 
@@ -143,7 +143,7 @@ struct Cut {
 };
 
 /// Relative rounding that a decision in binary128 is granted; far above 2^-113, far below anything fp64 can tell.
-inline f128 slack() { return ldexpq(1, -100); }
+constexpr f128 slack() { return twoTo(-100); }
 
 struct Surface {
   V3 normal, local;

@@ -11,7 +11,7 @@ void planeForms(Vec3<T> n, T num, const Frame<T>& eye, T index, EyeRecord<T>& ou
   Vec3<T> m = eye.toCamera(n) / num;
   out.kind = kinds::plane;
   out.add(m, -num / length(n));
-  out.add(index, shifted(T(1), -26) / length(m), 0, 0);
+  out.add(index, T(twoTo(-26)) / length(m), 0, 0);
 }
 
 template <class T>

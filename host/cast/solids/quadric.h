@@ -41,14 +41,14 @@ void quadricForms(Symmetric<T> M, Vec3<T> w, T C, const Frame<T>& eye, T index, 
   T tau = powerOfTwo(C > 0 ? squareRoot(C / M.norm()) : length(w) / M.norm());
   T mu = 1 / (powerOfTwo(M.norm()) * tau * tau);
   M = M * (mu * tau * tau), w = w * (mu * tau), C = C * mu;
-  T u0 = unitRoundoff(out.type), size = M.norm(), slope = length(w), huge = shifted(T(1), 100);
+  T u0 = unitRoundoff(out.type), size = M.norm(), slope = length(w), huge = T(twoTo(100));
   out.kind = kinds::quadric;
   out.add(M.xx, M.yy, M.zz, C);
   out.add(M.xy, M.xz, M.yz, 1 / tau);
   out.add(w, index);
-  out.add(sign, 1 / (larger(T(1), shifted(u0, 58)) * (slope * slope + C * size)),
-          C > 0 ? shifted(T(1), -26) / (C * size) : huge, shifted(T(1), -27) / size);
-  out.add(C > 0 ? huge : shifted(T(1), -26) / slope, 0, 0, 0);
+  out.add(sign, 1 / (larger(T(1), u0 * T(twoTo(58))) * (slope * slope + C * size)),
+          C > 0 ? T(twoTo(-26)) / (C * size) : huge, T(twoTo(-27)) / size);
+  out.add(C > 0 ? huge : T(twoTo(-26)) / slope, 0, 0, 0);
 }
 
 template <class T>
@@ -61,7 +61,7 @@ void packEye(const Quadric& quadric, const Frame<T>& eye, T index, EyeRecord<T>&
   T reach = length(o), scale = (Q.M.norm() * reach + 2 * length(Q.l)) * reach + magnitude(Q.j);
   out.counts(C, scale);
   out.counts(length(w), Q.M.norm() * reach + length(Q.l));
-  if (magnitude(C) <= T(slack()) * scale) C = 0;
+  if (magnitude(C) <= T(twoTo(-100)) * scale) C = 0;
   Symmetric<T> M = Q.M * (eye.unit * eye.unit);
   w = w * eye.unit;
   if (Q.M.norm() == 0) {  // a plane 2 l.p + j = 0

@@ -17,16 +17,16 @@ void packEye(const Sphere& sphere, const Frame<T>& eye, T index, EyeRecord<T>& o
   T r = sphere.radius / eye.unit;
   T far = dot(f, f), C = far - r * r;
   out.counts(C, far);
-  if (magnitude(C) <= T(slack()) * far) C = 0;  // the eye is on the surface, as far as binary128 can tell
+  if (magnitude(C) <= T(twoTo(-100)) * far) C = 0;  // the eye is on the surface, as far as binary128 can tell
   // Near the surface the numerator sqrt(q) - b cancels: the quadric's careful form does not.
-  T near = shifted(T(1), out.type == RealType::f64 ? -20 : out.type == RealType::df32 ? -12 : -4);
+  T near = twoTo(out.type == RealType::f64 ? -20 : out.type == RealType::df32 ? -12 : -4);
   if (magnitude(C) < near * far) {
     quadricForms<T>({1, 1, 1, 0, 0, 0}, f, C, eye, index, out, false);
     return;
   }
   // In this unit of length the error of q is bounded by DOUBT |d|^2: its scale is 1.
   T u = unitRoundoff(out.type);
-  T sigma = 1 / squareRoot(larger(T(1), shifted(u, 57)) * (far + magnitude(C)));
+  T sigma = 1 / squareRoot(larger(T(1), u * T(twoTo(57))) * (far + magnitude(C)));
   C = C * sigma * sigma;
   out.kind = kinds::sphere;
   out.add(eye.toCamera(C < 0 ? -f : f) * sigma, C);

@@ -39,7 +39,7 @@ void spanForms(const Span<T>& s, bool quad, const Frame<T>& eye, T index, EyeRec
   out.kind = quad ? kinds::quad : kinds::triangle;
   out.add(eye.toCamera(m), -num / area);
   out.add(edge(e2, f, l2 * reach), index);
-  out.add(edge(f, e1, l1 * reach), shifted(T(1), -26) / length(m));
+  out.add(edge(f, e1, l1 * reach), T(twoTo(-26)) / length(m));
   if (quad) {
     out.add(edge(f + e1, e2, l2 * (reach + l1)), 0);
     out.add(edge(e1, f + e2, l1 * (reach + l2)), 0);
