@@ -60,49 +60,61 @@ std::optional<Bounds> boundsOfSolid(const Disc& disc) {
   return checked(b);
 }
 
-std::optional<Bounds> boundsOfSolid(const Quadric& quadric) {
-  const QuadricForm<f128> q = quadricForm(quadric);
-  const f128 sign = q.M.xx < 0 ? -1 : 1, part = ldexpq(1, -40), wide = ldexpq(1, -60);
-  const f128 M[3][3] = {{sign * q.M.xx, sign * q.M.xy, sign * q.M.xz},
-                        {sign * q.M.xy, sign * q.M.yy, sign * q.M.yz},
-                        {sign * q.M.xz, sign * q.M.yz, sign * q.M.zz}};
-  const V3 l = sign * q.l;
-  f128 cofactor[3][3], size[3][3];  // and the sum of the magnitudes of its terms
+/// `part` is what has to be left of sums, `wide` what results are widened by.
+template <class T>
+std::optional<Bounds> ellipsoidBounds(const Quadric& quadric, T part, T wide) {
+  const QuadricForm<T> q = quadricForm<T>(quadric);
+  const T sign = q.M.xx < 0 ? -1 : 1;
+  const T M[3][3] = {{sign * q.M.xx, sign * q.M.xy, sign * q.M.xz},
+                     {sign * q.M.xy, sign * q.M.yy, sign * q.M.yz},
+                     {sign * q.M.xz, sign * q.M.yz, sign * q.M.zz}};
+  const Vec3<T> l = sign * q.l;
+  T cofactor[3][3], size[3][3];  // and the sum of the magnitudes of its terms
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) {
       const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-      const f128 plus = M[i1][k1] * M[i2][k2], minus = M[i1][k2] * M[i2][k1];
-      cofactor[i][k] = plus - minus, size[i][k] = fabsq(plus) + fabsq(minus);
+      const T plus = M[i1][k1] * M[i2][k2], minus = M[i1][k2] * M[i2][k1];
+      cofactor[i][k] = plus - minus, size[i][k] = magnitude(plus) + magnitude(minus);
     }
-  f128 determinant = 0, terms = 0;
-  for (int k = 0; k < 3; ++k) determinant += M[0][k] * cofactor[0][k], terms += fabsq(M[0][k]) * size[0][k];
+  T determinant = 0, terms = 0;
+  for (int k = 0; k < 3; ++k) determinant += M[0][k] * cofactor[0][k], terms += magnitude(M[0][k]) * size[0][k];
   // Sylvester: definite when the leading minors are positive.
   if (!(M[0][0] > 0) || !(determinant > part * terms)) return std::nullopt;
   for (int i = 0; i < 3; ++i)
     if (!(cofactor[i][i] > part * size[i][i])) return std::nullopt;
 
-  V3 center, uncertain;
-  f128 level = -sign * q.j, levelSize = fabsq(q.j);
+  Vec3<T> center, uncertain;
+  T level = -sign * q.j, levelSize = magnitude(q.j);
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
       center[i] -= cofactor[i][k] * l[k] / determinant;
-      uncertain[i] += size[i][k] * fabsq(l[k]) / determinant;
+      uncertain[i] += size[i][k] * magnitude(l[k]) / determinant;
     }
     level -= l[i] * center[i];
-    levelSize += fabsq(l[i]) * uncertain[i];
+    levelSize += magnitude(l[i]) * uncertain[i];
   }
-  level = larger(f128(0), level) +
-          wide * levelSize;  // below 0 there is no surface: a box costs less than a case of its own
+  level =
+      larger(T(0), level) + wide * levelSize;  // below 0 there is no surface: a box costs less than a case of its own
   Bounds b;
   for (int i = 0; i < 3; ++i) {
-    const f128 half = sqrtq(level * cofactor[i][i] / determinant), slack = wide * (uncertain[i] + half);
+    const T half = squareRoot(level * cofactor[i][i] / determinant), slack = wide * (uncertain[i] + half);
     setAxis(b, static_cast<std::size_t>(i), static_cast<double>(center[i] - half - slack),
-            static_cast<double>(center[i] + half + slack), static_cast<double>(fabsq(center[i]) + half));
+            static_cast<double>(center[i] + half + slack), static_cast<double>(magnitude(center[i]) + half));
   }
   return checked(b);
 }
 
+std::optional<Bounds> boundsOfSolid(const Quadric& quadric) {
+  return ellipsoidBounds<f128>(quadric, ldexpq(1, -40), ldexpq(1, -60));
+}
+
 }  // namespace
+
+std::optional<Bounds> quickBounds(const Quadric& quadric) {
+  // In fp64 quotients are right to 2^-36 where sums keep 2^-13 of their terms.
+  if (const auto quick = ellipsoidBounds<double>(quadric, 0x1p-13, 0x1p-24)) return quick;
+  return boundsOfSolid(quadric);
+}
 
 std::optional<Bounds> boundsOf(const Shape& shape) {
   return std::visit([](const auto& s) { return boundsOfSolid(s); }, shape);

@@ -14,4 +14,7 @@ struct Bounds {
 /// cannot tell), and whatever reaches beyond 2^100, where fp32 has no room for differences and their products.
 std::optional<Bounds> boundsOf(const Shape& shape);
 
+/// The same, wider by 2^-24, in a fiftieth of the time.
+std::optional<Bounds> quickBounds(const Quadric& quadric);
+
 }  // namespace solidcast

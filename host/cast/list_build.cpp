@@ -1,9 +1,11 @@
 #include "host/cast/list_build.h"
 
 #include <algorithm>
+#include <barrier>
 #include <cstring>
 #include <thread>
 
+#include "host/cast/depth_bounds.h"
 #include "host/cast/solids/all.h"
 
 namespace solidcast {
@@ -22,6 +24,13 @@ constexpr std::uint32_t eyeRowsOf[kindCount] = {
 /// Solids in more tiles than this go to the wide ones.
 constexpr int mostTiles = 256;
 enum Level : std::size_t { narrow, wide };
+
+/// Among a few from all over the scene: spheres hide others (depth_bounds.h).
+bool someSphere(const World& world) {
+  for (std::size_t i = 0; i < world.solids.size(); i += world.solids.size() / 64 + 1)
+    if (std::holds_alternative<Sphere>(world.solids[i].shape)) return true;
+  return false;
+}
 
 void onAllThreads(std::size_t threads, const auto& work) {
   std::vector<std::thread> helpers;
@@ -55,12 +64,39 @@ class Arena {
 struct Place {  // tiles from and to, both included
   std::uint16_t fromX, fromY, toX, toY;
 };
+struct Head {
+  std::uint32_t solid;
+  float nearest;  // Rectangle::nearest, rounded down
+  Place place;
+};
+
+/// By tile, the depth beyond which nothing of it is seen; none: no limits.
+struct Limits {
+  static constexpr std::size_t window = 4;
+  const float* byTile = nullptr;
+  const float* byWindow = nullptr;  // the deepest of the tiles from x to x + 3 and y to y + 3
+  std::size_t across = 0;
+
+  bool reached(const Head& head) const {
+    if (!byTile) return true;
+    const bool within =
+        head.place.toX - head.place.fromX < int(window) && head.place.toY - head.place.fromY < int(window);
+    if (within && head.nearest > byWindow[head.place.fromY * across + head.place.fromX]) return false;
+    for (std::size_t y = head.place.fromY; y <= head.place.toY; ++y)
+      for (std::size_t tile = y * across + head.place.fromX; tile <= y * across + head.place.toX; ++tile)
+        if (head.nearest <= byTile[tile]) return true;
+    return false;
+  }
+};
 
 }  // namespace
 
 /// What one thread found in its share of the solids, in their order.
 struct ListBuilder::Part {
-  std::array<std::array<Arena, kindCount>, 2> found;                       // Place and record, one after the other
+  DepthBounds depths;
+  std::vector<Head> reached;
+  std::array<Arena, 2> heads;                                              // Head, of all that is seen
+  std::array<std::array<Arena, kindCount>, 2> found;                       // Head and record, one after the other
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> tiles;  // entries by tile; then where the next goes
   bool grazing = false, farSphere = false, boxOnFace = false;
   std::size_t seen = 0;
@@ -68,45 +104,91 @@ struct ListBuilder::Part {
   void start() {
     grazing = farSphere = boxOnFace = false;
     seen = 0;
+    for (Arena& arena : heads) arena.clear();
     for (auto& level : found)
       for (Arena& arena : level) arena.clear();
     for (auto& level : tiles)
       for (auto& counts : level) counts.clear();
   }
 
-  void collect(const World& world, std::size_t from, std::size_t to, RealType type, const Silhouette& silhouette,
-               const EyeFrames& eye, const ListGrid& grid) {
-    for (std::size_t i = from; i < to; ++i)
+  /// Where each solid is seen, and what it hides.
+  void look(const World& world, std::size_t from, std::size_t to, const Silhouette& silhouette, const EyeFrames& eye,
+            const ListGrid& grid, bool hiding) {
+    constexpr std::size_t ahead = 16;
+    for (std::size_t i = from; i < to; ++i) {
+      if (i + ahead < to) fetch(world.solids[i + ahead]);
       std::visit(
           [&](const auto& solid) {
             // Of the whole scene, seen or not: so that fast has the same bits in every plan.
             if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, Sphere>)
               farSphere = farSphere || isFar(solid, eye.plain);
-            Place place;
+            Head head;
             Level level;
-            if (!findPlace(silhouette.rectangle(solid), grid, place, level)) return;
-            packed(solid, eye, i, type, [&](const auto& record) { add(record, place, level, grid); });
-            if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
-              boxOnFace = boxOnFace || eyeOnFacePlane(solid, eye.extended);
+            const Rectangle rectangle = silhouette.rectangle(solid);
+            if (!findPlace(rectangle, grid, head.place, level)) return;
+            head.solid = static_cast<std::uint32_t>(i);
+            head.nearest = static_cast<float>(rectangle.nearest * (1 - 1e-6));
+            std::memcpy(heads[level].add(sizeof head), &head, sizeof head);
+            if (hiding && level == narrow && !depths.hidden(rectangle)) depths.add(solid);
           },
           world.solids[i].shape);
+    }
+  }
+
+  /// Records of the solids that are in front of the depth limit of one of their tiles.
+  void pack(const World& world, RealType type, const EyeFrames& eye, const ListGrid& grid, const Limits& limits) {
+    // Those that are left lie far apart in memory: they are fetched a few ahead.
+    constexpr std::size_t ahead = 8;
+    for (const Level level : {wide, narrow}) {
+      reached.clear();
+      const auto bytes = heads[level].bytes();
+      for (const std::byte* at = bytes.data(); at != bytes.data() + bytes.size(); at += sizeof(Head)) {
+        Head head;
+        std::memcpy(&head, at, sizeof head);
+        if (level == wide || limits.reached(head)) reached.push_back(head);
+      }
+      for (std::size_t i = 0; i < reached.size(); ++i) {
+        const Head& head = reached[i];
+        if (i + ahead < reached.size()) fetch(world.solids[reached[i + ahead].solid]);
+        std::visit(
+            [&](const auto& solid) {
+              packed(solid, eye, head.solid, type, [&](const auto& record) { add(record, head, level, grid, limits); });
+              if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
+                boxOnFace = boxOnFace || eyeOnFacePlane(solid, eye.extended);
+            },
+            world.solids[head.solid].shape);
+      }
+    }
+  }
+
+  static void fetch(const SolidEntry& solid) {
+    const auto* at = reinterpret_cast<const char*>(&solid);
+    for (std::size_t line = 0; line < sizeof solid; line += 64) __builtin_prefetch(at + line);
   }
 
   template <class T>
-  void add(const EyeRecord<T>& record, const Place& place, Level level, const ListGrid& grid) {
+  void add(const EyeRecord<T>& record, const Head& head, Level level, const ListGrid& grid, const Limits& limits) {
     if (record.kind < 0) return;
     const auto kind = static_cast<std::size_t>(record.kind);
     ++seen;
     grazing = grazing || record.grazing;
     const std::size_t rowSize = rowBytes(record.type);
-    std::byte* to = found[level][kind].add(sizeof place + rowSize * eyeRowsOf[kind]);
-    std::memcpy(to, &place, sizeof place);
-    for (int r = 0; r < record.rows; ++r) writeRow(to + sizeof place + rowSize * r, record.type, record.row[r]);
+    std::byte* to = found[level][kind].add(sizeof head + rowSize * eyeRowsOf[kind]);
+    std::memcpy(to, &head, sizeof head);
+    for (int r = 0; r < record.rows; ++r) writeRow(to + sizeof head + rowSize * r, record.type, record.row[r]);
     auto& counts = tiles[level][kind];
-    const std::size_t across = level == wide ? grid.wideAcross() : grid.across;
-    if (counts.empty()) counts.assign(across * (level == wide ? grid.wideDown() : grid.down), 0);
-    for (std::size_t y = place.fromY; y <= place.toY; ++y)
-      for (std::size_t x = place.fromX; x <= place.toX; ++x) ++counts[y * across + x];
+    if (counts.empty())
+      counts.assign(level == wide ? std::size_t{1} * grid.wideAcross() * grid.wideDown()
+                                  : std::size_t{1} * grid.across * grid.down,
+                    0);
+    if (level == wide) eachTile(head, grid.wideAcross(), nullptr, [&](std::size_t tile) { ++counts[tile]; });
+    else eachTile(head, grid.across, limits.byTile, [&](std::size_t tile) { ++counts[tile]; });
+  }
+
+  static void eachTile(const Head& head, std::size_t across, const float* limits, const auto& f) {
+    for (std::size_t y = head.place.fromY; y <= head.place.toY; ++y)
+      for (std::size_t tile = y * across + head.place.fromX; tile <= y * across + head.place.toX; ++tile)
+        if (!limits || head.nearest <= limits[tile]) f(tile);
   }
 
   /// Pixel i is seen at i + 0.5, so that [a, b] holds centres from ceil(a - 0.5) to floor(b - 0.5). False: none.
@@ -133,7 +215,7 @@ struct ListBuilder::Part {
   }
 
   /// Copies every record to its tiles; tiles[][] says where each tile's next one goes.
-  void write(std::byte* rows, std::size_t rowSize, const ListGrid& grid) {
+  void write(std::byte* rows, std::size_t rowSize, const ListGrid& grid, const float* limits) {
     for (const Level level : {narrow, wide})
       for (std::size_t kind = 0; kind < kindCount; ++kind) {
         const auto bytes = found[level][kind].bytes();
@@ -141,8 +223,9 @@ struct ListBuilder::Part {
         // Of known size, a record is copied by a few vector moves: a sixth of all the time was memcpy's.
         const auto copy = [&]<std::size_t ROWS>() {
           const std::size_t across = level == wide ? grid.wideAcross() : grid.across;
-          if (rowSize == 16) writeAs<16, ROWS>(bytes, rows, tiles[level][kind].data(), across);
-          else writeAs<32, ROWS>(bytes, rows, tiles[level][kind].data(), across);
+          const float* depths = level == wide ? nullptr : limits;
+          if (rowSize == 16) writeAs<16, ROWS>(bytes, rows, tiles[level][kind].data(), across, depths);
+          else writeAs<32, ROWS>(bytes, rows, tiles[level][kind].data(), across, depths);
         };
         switch (eyeRowsOf[kind]) {
           case 2:
@@ -158,17 +241,16 @@ struct ListBuilder::Part {
       }
   }
   template <std::size_t ROW_SIZE, std::size_t ROWS>
-  static void writeAs(std::span<const std::byte> from, std::byte* rows, std::uint32_t* next, std::size_t across) {
+  static void writeAs(std::span<const std::byte> from, std::byte* rows, std::uint32_t* next, std::size_t across,
+                      const float* limits) {
     constexpr std::size_t record = ROW_SIZE * ROWS;
-    for (const std::byte* at = from.data(); at != from.data() + from.size(); at += sizeof(Place) + record) {
-      Place place;
-      std::memcpy(&place, at, sizeof place);
-      for (std::size_t y = place.fromY; y <= place.toY; ++y)
-        for (std::size_t x = place.fromX; x <= place.toX; ++x) {
-          std::uint32_t& row = next[y * across + x];
-          std::memcpy(rows + row * ROW_SIZE, at + sizeof place, record);
-          row += ROWS;
-        }
+    for (const std::byte* at = from.data(); at != from.data() + from.size(); at += sizeof(Head) + record) {
+      Head head;
+      std::memcpy(&head, at, sizeof head);
+      eachTile(head, across, limits, [&](std::size_t tile) {
+        std::memcpy(rows + next[tile] * ROW_SIZE, at + sizeof head, record);
+        next[tile] += ROWS;
+      });
     }
   }
 };
@@ -184,9 +266,27 @@ void ListBuilder::collect(const Scene& scene, RealType type, const Silhouette& s
   const EyeFrames eye(eyeFrame(scene, type));
   const std::size_t solids = scene.world.solids.size(), threads = solids < 256 ? 1 : parts_.size();
   for (auto& part : parts_) part->start();
+  // Looking for what is hidden costs a pass over the pixels, which a few solids do not repay.
+  const std::size_t pixels = static_cast<std::size_t>(grid.region.width) * static_cast<std::size_t>(grid.region.height);
+  hiding_ = silhouette.centresAlone() && solids > 1000 && solids > pixels / 64 && someSphere(scene.world);
+  limits_.resize(hiding_ ? static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.down) : 0);
+  windows_.resize(limits_.size());
+  const Limits limits{hiding_ ? limits_.data() : nullptr, windows_.data(), static_cast<std::size_t>(grid.across)};
+  std::barrier together(static_cast<std::ptrdiff_t>(threads));
   onAllThreads(threads, [&](std::size_t t) {
-    const std::size_t from = solids * t / threads, to = solids * (t + 1) / threads;
-    parts_[t]->collect(scene.world, from, to, type, silhouette, eye, grid);
+    Part& part = *parts_[t];
+    if (hiding_)
+      part.depths.start(silhouette, grid.region, grid.across * ListGrid::tile, grid.down * ListGrid::tile, type);
+    part.look(scene.world, solids * t / threads, solids * (t + 1) / threads, silhouette, eye, grid, hiding_);
+    if (hiding_) {
+      together.arrive_and_wait();
+      const auto down = static_cast<std::size_t>(grid.down);
+      for (std::size_t y = down * t / threads; y < down * (t + 1) / threads; ++y) limitTiles(y, threads);
+      together.arrive_and_wait();
+      for (std::size_t y = down * t / threads; y < down * (t + 1) / threads; ++y) limitWindows(y);
+      together.arrive_and_wait();
+    }
+    part.pack(scene.world, type, eye, grid, limits);
   });
   grazing_ = farSphere_ = boxOnFace_ = false;
   seen_ = 0;
@@ -196,6 +296,30 @@ void ListBuilder::collect(const Scene& scene, RealType type, const Silhouette& s
   }
   layOut();
   sortTiles();
+}
+
+/// The deepest of each tile's pixels, by what any of the threads knows.
+void ListBuilder::limitTiles(std::size_t tileRow, std::size_t threads) {
+  const std::size_t across = static_cast<std::size_t>(grid_.across);
+  float* limit = limits_.data() + tileRow * across;
+  std::fill_n(limit, across, 0.f);
+  for (std::size_t y = tileRow * ListGrid::tile; y < (tileRow + 1) * ListGrid::tile; ++y) {
+    for (std::size_t x = 0; x < across * ListGrid::tile; ++x) {
+      float nearest = parts_[0]->depths.row(y)[x];
+      for (std::size_t t = 1; t < threads; ++t) nearest = std::min(nearest, parts_[t]->depths.row(y)[x]);
+      limit[x / ListGrid::tile] = std::max(limit[x / ListGrid::tile], nearest);
+    }
+  }
+}
+
+void ListBuilder::limitWindows(std::size_t tileRow) {
+  const std::size_t across = static_cast<std::size_t>(grid_.across), down = static_cast<std::size_t>(grid_.down);
+  std::vector<float> deepest(across + Limits::window, 0.f);
+  for (std::size_t y = tileRow; y < std::min(down, tileRow + Limits::window); ++y)
+    for (std::size_t x = 0; x < across; ++x) deepest[x] = std::max(deepest[x], limits_[y * across + x]);
+  for (std::size_t x = 0; x < across; ++x)
+    windows_[tileRow * across + x] =
+        std::max(std::max(deepest[x], deepest[x + 1]), std::max(deepest[x + 2], deepest[x + 3]));
 }
 
 /// Kind by kind and tile by tile, each tile's entries in the order of the solids.
@@ -284,7 +408,7 @@ void ListBuilder::write(std::span<std::byte> rows, std::span<std::byte> lanes, s
       }
     }
     for (std::size_t part = t; part < parts_.size(); part += threads)
-      parts_[part]->write(rows.data(), rowBytes(type_), grid_);
+      parts_[part]->write(rows.data(), rowBytes(type_), grid_, hiding_ ? limits_.data() : nullptr);
   });
 }
 

@@ -63,6 +63,8 @@ class ListBuilder {
 
  private:
   struct Part;  // a thread's share of the solids
+  void limitTiles(std::size_t tileRow, std::size_t threads);
+  void limitWindows(std::size_t tileRow);
   void layOut();
   void sortTiles();
 
@@ -70,10 +72,11 @@ class ListBuilder {
   RealType type_{};
   std::vector<std::unique_ptr<Part>> parts_;
   std::array<bool, kindCount> kinds_{};
-  bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, wideOnes_ = false;
+  bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, wideOnes_ = false, hiding_ = false;
   std::size_t rows_ = 0, seen_ = 0, listed_ = 0;
   // [narrow 0 or wide 1][kind]: by tile, and for the wide ones the count beside
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> first_, count_;
+  std::vector<float> limits_, windows_;       // depth_bounds.h, by tile; the deepest of a few tiles
   std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles by falling entries
 };
 

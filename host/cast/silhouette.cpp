@@ -22,10 +22,10 @@ Silhouette::Silhouette(const Scene& scene, int width, int height, int samples)
 
 Rectangle Silhouette::onGlobe(const P3& c, double radius) const {
   const double distance = std::sqrt(c.x * c.x + c.y * c.y + c.depth * c.depth);
-  if (distance <= radius * 1.001) return {{}, {}, true};
+  if (distance <= radius * 1.001) return all();
   const double size = std::asin(radius / distance) + 1e-9;
   const double latitude = std::asin(std::clamp(c.y / distance, -1.0, 1.0)), longitude = std::atan2(c.x, c.depth);
-  Rectangle r{{-infinite, infinite}, {latitude - size, latitude + size}};
+  Rectangle r{{-infinite, infinite}, {latitude - size, latitude + size}, false, 0};
   const double wide = std::sin(size) / std::cos(latitude);  // the cap's half width, unless it holds a pole
   if (std::abs(latitude) + size >= M_PI / 2 || wide >= 1) return r;
   const double half = std::asin(wide) + 1e-9;

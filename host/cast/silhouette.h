@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/cast/bounds.h"
 #include "host/cast/records.h"
 #include "host/cast/solids/all.h"
 #include "host/image/band.h"
@@ -22,6 +23,7 @@ struct Interval {
 struct Rectangle {
   Interval x, y;
   bool everywhere = false;
+  double nearest = 0;  // depth along the camera's forward axis before which nothing of it is; perspective only
 };
 
 /// A scene's camera in fp64. All that fp64 loses is far below the thousandth of a pixel that rectangles are widened by.
@@ -30,20 +32,35 @@ class Silhouette {
   /// `samples` per pixel and axis: they lie up to half a pixel off the centre.
   Silhouette(const Scene& scene, int width, int height, int samples);
 
+  Rectangle rectangle(const Quadric& quadric) const {
+    const auto bounds = quickBounds(quadric);
+    return bounds ? rectangle(AABox{bounds->lo, bounds->hi}) : all();
+  }
   template <class Solid>
   Rectangle rectangle(const Solid& solid) const {
     const auto corners = outline(solid, origin_);
     if (corners.size() > 0 && kind_ != CameraKind::environment) return widened(ofCorners(corners));
     const Ball b = ball(solid);
-    if (b.radius < 0 || wide_) return {{}, {}, true};
+    if (b.radius < 0 || wide_) return all();
     return widened(ofBall(toCamera(difference(b.center, origin_)), b.radius));
   }
 
- private:
-  enum class CameraKind { perspective, orthographic, environment };  // as in Camera
   struct P3 {
     double x, y, depth;  // camera axes, y down
   };
+  /// A point from the eye, and where the image has a slope x/depth or y/depth: in pixels. For perspective cameras.
+  P3 fromEye(const Triple& p) const { return toCamera(difference(p, origin_)); }
+  double pixelX(double slope) const { return slope * perX_ + middleX_; }
+  double pixelY(double slope) const { return slope * perY_ + middleY_; }
+  double pixelsPerSlopeX() const { return perX_; }
+  double pixelsPerSlopeY() const { return perY_; }
+  /// Rays go through the centres of pixels alone, of a perspective camera of ordinary angles.
+  bool centresAlone() const { return kind_ == CameraKind::perspective && !wide_ && slack_ < 0.5; }
+  static bool inFront(const P3& p) { return p.depth > flat * size(p); }
+
+ private:
+  enum class CameraKind { perspective, orthographic, environment };  // as in Camera
+  static Rectangle all() { return {{}, {}, true, 0}; }
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   /// Directions this close to the plane of the eye count as in it.
   static constexpr double flat = 1e-6;
@@ -59,8 +76,10 @@ class Silhouette {
     Rectangle r;
     P3 p[std::tuple_size_v<Corners> + 1];
     std::size_t behind = 0;
+    r.nearest = infinite;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       p[i] = toCamera(corners[i]);
+      r.nearest = std::min(r.nearest, p[i].depth);
       if (kind_ == CameraKind::orthographic) {
         r.x.add(p[i].x), r.y.add(p[i].y);
       } else if (inFront(p[i])) {
@@ -71,7 +90,8 @@ class Silhouette {
       }
     }
     if (behind == 0) return r;
-    if (wide_) return {{}, {}, true};
+    r.nearest = 0;
+    if (wide_) return all();
     if (behind == corners.size()) return {};
     // An edge that passes the plane of the eye goes to infinity on the side where it does.
     for (std::size_t i = 0; i < corners.size(); ++i)
@@ -84,7 +104,6 @@ class Silhouette {
     return r;
   }
   static double size(const P3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.depth); }
-  static bool inFront(const P3& p) { return p.depth > flat * size(p); }
   static void towards(Interval& i, double where, double doubt) {
     if (where >= -doubt) i.to = infinite;
     if (where <= doubt) i.from = -infinite;
@@ -105,9 +124,9 @@ class Silhouette {
     const double big = radius * (1 + 1e-9) + 1e-12 * size(c);
     if (kind_ == CameraKind::perspective) {
       if (c.depth <= -big) return {};
-      return {slopes(c.x, c.depth, big), slopes(c.y, c.depth, big)};
+      return {slopes(c.x, c.depth, big), slopes(c.y, c.depth, big), false, std::max(0.0, c.depth - big)};
     }
-    if (kind_ == CameraKind::orthographic) return {{c.x - big, c.x + big}, {c.y - big, c.y + big}};
+    if (kind_ == CameraKind::orthographic) return {{c.x - big, c.x + big}, {c.y - big, c.y + big}, false, 0};
     return onGlobe(c, big);
   }
   Rectangle onGlobe(const P3& c, double radius) const;  // of an environment camera: longitude, latitude

@@ -71,6 +71,22 @@ TEST_F(Lists, OfEveryKindFromOutsideFromWithinAndAllAround) {
   }
 }
 
+/// In a crowd most spheres are hidden and not listed (depth_bounds.h); their absence must not show, a wrong one's would.
+TEST_F(Lists, WhatIsHiddenIsLeftOutAndNotMissed) {
+  const RenderJob job = small();
+  for (const char* kind : {"sphere", "mixed"}) {
+    const Scene scene = randomScene(kind, 6000, 8);
+    expectAsStorage(scene, job, kind);
+    expectAsStorage(fromWithin(scene), job, std::string(kind) + " from within");
+  }
+  CastStats stats;
+  picture(randomScene("sphere", 6000, 8), job, {.method = Method::fast, .plan = Plan::lists}, &stats);
+  const auto line = std::find_if(stats.plan.begin(), stats.plan.end(),
+                                 [](const std::string& l) { return l.rfind("lists of ", 0) == 0; });
+  ASSERT_NE(line, stats.plan.end());
+  EXPECT_LT(std::stoi(line->substr(9)), 3000) << *line;
+}
+
 TEST_F(Lists, SamplesTwoSidedAndBands) {
   const Scene scene = fromWithin(randomScene("mixed", 400, 6));
   RenderJob job = small();
