@@ -3,7 +3,9 @@
 // load of a record serves sixteen rays. The host makes the lists (host/cast/list_build.h): a list a kind, and of each
 // kind two, the solids of the wide tile that this one lies in (they are seen large) and its own.
 //
-// Compiled in variants: METHOD 1 fast, 2 exact; ARITHMETIC 0, 1; CAMERA 0, 1 (shaders/CMakeLists.txt).
+// Compiled in variants (shaders/CMakeLists.txt): METHOD 1 fast, 2 exact; ARITHMETIC 0, 1; CAMERA 0, 1; STORAGE 2 records and
+// lists in texel buffers, which llvmpipe reads quicker, its loops over the rays unrolled; 3 in storage buffers, its loops left as
+// they are, for other devices.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 
@@ -14,7 +16,6 @@
 #define EYE 1
 #define WORLD 0
 #define HITS 0
-#define STORAGE 2
 
 #include "search.glsl"
 
@@ -36,7 +37,13 @@ layout(constant_id = 34) const bool PORTIONED = false;
 
 // By invocation: (x, y in the band, -, -), then for each kind of the scene
 // (first row of the wide tile's solids, how many, first row of its own, how many of both).
+#if STORAGE == 2
 layout(set = 0, binding = 1) uniform usamplerBuffer lists;
+#define LIST_TEXEL(i) texelFetch(lists, i)
+#else
+layout(set = 0, binding = 1, std430) readonly buffer Lists { uvec4 lists[]; };
+#define LIST_TEXEL(i) lists[i]
+#endif
 
 // PORTIONED: what a pixel has found so far.
 layout(set = 0, binding = 6, std430) buffer State { Best state[]; };
@@ -45,7 +52,7 @@ layout(set = 0, binding = 6, std430) buffer State { Best state[]; };
 
 void main() {
   int at = int(gl_GlobalInvocationID.x) * int(portion.listTexels);
-  uvec4 tile = texelFetch(lists, at);
+  uvec4 tile = LIST_TEXEL(at);
 
   EyeRay ray[RAYS];
   Best best[RAYS];
@@ -68,7 +75,7 @@ void main() {
   uint done = 0u;  // entries of the kinds before
 #define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS)                                    \
   if (KIND##_COUNT > 0u) {                                                                       \
-    uvec4 list = texelFetch(lists, ++at);                                                        \
+    uvec4 list = LIST_TEXEL(++at);                                                        \
     uint i = 0u, end = list.w;                                                                   \
     if (PORTIONED) {                                                                             \
       i = min(max(portion.from, done) - done, list.w);                                           \

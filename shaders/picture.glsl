@@ -10,8 +10,8 @@
 #include "integrators/casting.glsl"
 #include "integrators/castingdist.glsl"
 
-#if ARITHMETIC == 2
-#define UNROLL  // unrolled, double-float arithmetic takes seconds to compile
+#if ARITHMETIC == 2 || STORAGE == 3
+#define UNROLL  // unrolled, double-float arithmetic takes seconds to compile, and lists.comp minutes on SwiftShader
 #else
 #define UNROLL [[unroll]]
 #endif

@@ -1,6 +1,6 @@
 // Where rows of numbers come from. STORAGE 0: uniform buffers (llvmpipe loads them once for all lanes: 1.7 times
 // faster), STORAGE 1: storage buffers, for scenes beyond the uniform range; STORAGE 2: a texel buffer, where each lane
-// loads rows of its own. A row is four `real`; a double-float row is two vec4, high parts first.
+// loads rows of its own; STORAGE 3: a storage buffer for the same. A row is four `real`; a double-float row is two vec4, high parts first.
 #ifndef SOLIDCAST_RECORDS
 #define SOLIDCAST_RECORDS
 #include "numeric.glsl"
@@ -34,14 +34,20 @@ real4 rowOf(RAW first, RAW second) {
 #define ROW(raws, row) rowOf(raws[row], raws[row])
 #endif
 
+#if STORAGE >= 2
 #if STORAGE == 2
 layout(set = 0, binding = 0) uniform usamplerBuffer records;
+#define RECORD_TEXEL(i) texelFetch(records, int(i))
+#else
+layout(set = 0, binding = 0, std430) readonly buffer Records { uvec4 records[]; };
+#define RECORD_TEXEL(i) records[i]
+#endif
 real4 record(uint row) {
 #if ARITHMETIC == 1
-  uvec4 low = texelFetch(records, int(2u * row)), high = texelFetch(records, int(2u * row + 1u));
+  uvec4 low = RECORD_TEXEL(2u * row), high = RECORD_TEXEL(2u * row + 1u);
   return real4(packDouble2x32(low.xy), packDouble2x32(low.zw), packDouble2x32(high.xy), packDouble2x32(high.zw));
 #else
-  return uintBitsToFloat(texelFetch(records, int(row)));
+  return uintBitsToFloat(RECORD_TEXEL(row));
 #endif
 }
 #elif EYE

@@ -21,11 +21,14 @@ constexpr std::size_t stateBytes = 40 * 16;  // lists.comp: State, by tile, at m
 
 std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
 
+/// What is taken for a buffer of so many bytes, so that it serves the next scene too.
+std::size_t withRoom(std::size_t bytes) { return std::max<std::size_t>(bytes + bytes / 8, 64) / 16 * 16; }
+
 /// Keeps the buffer while it is large enough; its contents are not kept.
 void reserve(gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, gpu::BufferUse use) {
   if (buffer.bytes().size() >= std::max<std::size_t>(bytes, 16)) return;
   buffer = {};
-  buffer = device.makeBuffer(std::max<std::size_t>(bytes + bytes / 8, 64) / 16 * 16, use);
+  buffer = device.makeBuffer(withRoom(bytes), use);
 }
 
 }  // namespace
@@ -33,11 +36,17 @@ void reserve(gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, gpu::B
 ListSearch::ListSearch(const PassJob& job, const Scene& scene) : job_(job), scene_(&scene), program_(job.program) {
   program_.job = Job::lists;
   job_.stats.module += (job_.stats.module.empty() ? "" : ", ") + program_.moduleName();
+  program_.storage = !job_.device.info().name.starts_with("llvmpipe");
+  loadShader();
+  setScene(scene);
+}
+
+void ListSearch::loadShader() {
   gpu::CompiledModule module = programModule(program_, job_.options);
   job_.stats.files.insert(job_.stats.files.end(), module.files.begin(), module.files.end());
   spirv_ = std::move(module.spirv);
   job_.stats.spirvBytes += spirv_.size() * 4;
-  setScene(scene);
+  pipeline_.reset();
 }
 
 void ListSearch::setScene(const Scene& scene) {
@@ -81,8 +90,16 @@ void ListSearch::build(const PassTarget& target, const Band& band, int firstRow,
   lanes_ = (builder_.listedTiles() + groupLanes - 1) / groupLanes * groupLanes;
   const std::size_t laneTexels = 1 + std::count(kinds_.begin(), kinds_.end(), true);
   const std::size_t bytes = builder_.rows() * rowBytes(program_.real);
-  reserve(job_.device, records_, bytes, gpu::BufferUse::texels);
-  reserve(job_.device, lists_, lanes_ * laneTexels * 16, gpu::BufferUse::texels);
+  const std::size_t listBytes = lanes_ * laneTexels * 16;
+  const std::size_t texels = job_.device.info().limits.maxTexelBufferElements;
+  if (!program_.storage && std::max(withRoom(bytes), withRoom(listBytes)) / 16 > texels) {
+    program_.storage = true;  // from now on
+    records_ = {}, lists_ = {};
+    loadShader();
+  }
+  const auto use = program_.storage ? gpu::BufferUse::storage : gpu::BufferUse::texels;
+  reserve(job_.device, records_, bytes, use);
+  reserve(job_.device, lists_, listBytes, use);
   reserve(job_.device, state_, portioned_ ? lanes_ * stateBytes : 16, gpu::BufferUse::storage);
   builder_.write(records_.bytes(), lists_.bytes(), lanes_, kinds_);
   job_.stats.flatten_ms += flattening.ms();

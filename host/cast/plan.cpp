@@ -122,8 +122,8 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
     }
     case Plan::lists: {
       const bool fast = f.program.method == Method::fast;
-      cost.prepare_ms = f.pictures * (0.2 + n * (fast ? 2e-5 : 2e-4)) + listsPipelineMs;
-      cost.rays_ms = rays * (fast ? 4e-6 : 8e-6) + f.count[0] * rays * perSolid;
+      cost.prepare_ms = (f.moving ? f.pictures : 1) * (0.3 + n * (fast ? 5e-5 : 3e-4)) + listsPipelineMs;
+      cost.rays_ms = rays * (fast ? 8e-6 : 1.4e-5) + f.count[0] * rays * perSolid;  // planes are in every list
       if (!f.program.eye()) cost.impossible = "rays without a common origin have no lists";
       else if (f.program.hits) cost.impossible = "normals come from world records, of which lists have none";
       else if (f.program.real == RealType::df32) cost.impossible = "double-float takes seconds to compile";
