@@ -48,7 +48,8 @@ class DepthBounds {
   void add(const Sphere& sphere) {
     const auto c = silhouette_->fromEye(sphere.center);
     const double square = c.x * c.x + c.y * c.y + c.depth * c.depth, all = sphere.radius * sphere.radius;
-    const double held = all - lost_ * square;  // of the squared radius, that fp32 cannot lose
+    // Of the squared radius, what the shader's rounding cannot take; from 16 radii on it has the form for far spheres.
+    const double held = all - lost_ * std::sqrt(square * std::min(square, 256 * all));
     if (!(held > 0 && c.depth > 0 && square > all * 1.001)) return;
     const double slope = 1 / c.depth, r = std::sqrt(held) * slope;
     const double x = silhouette_->pixelX(c.x * slope) - region_.x, y = silhouette_->pixelY(c.y * slope) - region_.y;
@@ -91,7 +92,7 @@ class DepthBounds {
   Crop region_;
   std::size_t stride_ = 0;
   double margin_ = 0;  // in pixels
-  double lost_ = 0;    // of a sphere's q, relative to the squared distance: what the shader's rounding can take
+  double lost_ = 0;    // of a sphere's q, relative to its terms: what the shader's rounding can take
   std::vector<float> depth_;
 };
 
