@@ -5,9 +5,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "host/carried/probe.h"
 #include "host/cli/verbs.h"
 #include "host/gpu/device.h"
-#include "host/carried/probe.h"
 
 namespace solidcast::cli {
 namespace {

@@ -150,12 +150,11 @@ Buffer Device::makeBuffer(std::size_t bytes, BufferUse use) {
   impl->core = impl_->core;
   impl->bytes = bytes;
   impl->use = use;
-  const VkBufferCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-      .size = std::max<std::size_t>(bytes, 16),  // Vulkan has no empty buffers
-      .usage = VkBufferUsageFlags(uniform  ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
-                                  : texels ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT
-                                           : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)};
+  const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                .size = std::max<std::size_t>(bytes, 16),  // Vulkan has no empty buffers
+                                .usage = VkBufferUsageFlags(uniform  ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
+                                                            : texels ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT
+                                                                     : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)};
   VkBuffer buffer{};
   check(core.vkCreateBuffer(core.device, &info, nullptr, &buffer), "make a buffer");
   impl->buffer = {core.device, buffer, core.vkDestroyBuffer};

@@ -93,12 +93,11 @@ Pipeline Device::makePipeline(std::span<const std::uint32_t> whole, const Specia
 
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const auto& binding : shader.bindings) {
-    bindings.push_back(
-        {.binding = binding.number,
-         .descriptorType = descriptorType(binding.kind),
-         .descriptorCount = 1,
-         .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
-         .pImmutableSamplers = nullptr});
+    bindings.push_back({.binding = binding.number,
+                        .descriptorType = descriptorType(binding.kind),
+                        .descriptorCount = 1,
+                        .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+                        .pImmutableSamplers = nullptr});
   }
   const VkDescriptorSetLayoutCreateInfo setInfo{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                                 .bindingCount = std::uint32_t(bindings.size()),

@@ -62,8 +62,8 @@ Runner::Bound Runner::checked(const Dispatch& dispatch) const {
     const Buffer* buffer = binding.number < dispatch.buffers.size() ? dispatch.buffers[binding.number] : nullptr;
     if (!buffer || !buffer->impl_) throw Error(Exit::shader, "the shader's " + name + " was given no buffer");
     if (kindOf(buffer->impl_->use) != binding.kind) {
-      throw Error(Exit::shader, "the shader's " + name + " is " + kindName(binding.kind) +
-                                    ", but was given one of another kind");
+      throw Error(Exit::shader,
+                  "the shader's " + name + " is " + kindName(binding.kind) + ", but was given one of another kind");
     }
     bound.buffers.push_back(buffer->impl_.get());
   }
@@ -119,17 +119,16 @@ VkDescriptorSet Runner::descriptorSet(const Bound& bound) {
     const auto& binding = bound.pipeline->interface.bindings[i];
     ranges[i] = {bound.buffers[i]->buffer.get(), 0, VK_WHOLE_SIZE};
     views[i] = bound.buffers[i]->view.get();
-    writes.push_back(
-        {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-         .pNext = nullptr,
-         .dstSet = set,
-         .dstBinding = binding.number,
-         .dstArrayElement = 0,
-         .descriptorCount = 1,
-         .descriptorType = descriptorType(binding.kind),
-         .pImageInfo = nullptr,
-         .pBufferInfo = &ranges[i],
-         .pTexelBufferView = &views[i]});
+    writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                      .pNext = nullptr,
+                      .dstSet = set,
+                      .dstBinding = binding.number,
+                      .dstArrayElement = 0,
+                      .descriptorCount = 1,
+                      .descriptorType = descriptorType(binding.kind),
+                      .pImageInfo = nullptr,
+                      .pBufferInfo = &ranges[i],
+                      .pTexelBufferView = &views[i]});
   }
   c.vkUpdateDescriptorSets(c.device, std::uint32_t(writes.size()), writes.data(), 0, nullptr);
   return set;

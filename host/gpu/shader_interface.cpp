@@ -186,7 +186,8 @@ ShaderInterface readInterface(std::span<const std::uint32_t> spirv,
                          module.decorations[block].contains(spv::DecorationBufferBlock);
     const bool uniform = variable.storage == spv::StorageClassUniform && !storage;
     const bool texels = variable.storage == spv::StorageClassUniformConstant && module.isTexelBuffer(block);
-    if (!storage && !uniform && !texels) refuse("binding " + std::to_string(number) + " (" + name + ") is not a buffer");
+    if (!storage && !uniform && !texels)
+      refuse("binding " + std::to_string(number) + " (" + name + ") is not a buffer");
     if (const auto set = own.find(spv::DecorationDescriptorSet); set != own.end() && set->second != 0) {
       refuse("binding " + std::to_string(number) + " (" + name + ") is in set " + std::to_string(set->second) +
              "; only set 0 is used");
@@ -194,16 +195,16 @@ ShaderInterface readInterface(std::span<const std::uint32_t> spirv,
     using Kind = ShaderInterface::Kind;
     out.bindings.push_back({number, storage ? Kind::storage : uniform ? Kind::uniform : Kind::texels, name});
   }
-  std::sort(out.bindings.begin(), out.bindings.end(), [](const auto& a, const auto& b) {
-    return std::pair(a.number, a.kind) < std::pair(b.number, b.kind);
-  });
+  std::sort(out.bindings.begin(), out.bindings.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.number, a.kind) < std::pair(b.number, b.kind); });
   // One buffer may be seen as several types (float and uint, say) at the same binding.
   const auto same = [](const auto& a, const auto& b) { return a.number == b.number && a.kind == b.kind; };
   out.bindings.erase(std::unique(out.bindings.begin(), out.bindings.end(), same), out.bindings.end());
   for (std::size_t i = 1; i < out.bindings.size(); ++i) {
     if (out.bindings[i].number == out.bindings[i - 1].number) {
-      refuse("binding " + std::to_string(out.bindings[i].number) + " is both " + kindName(out.bindings[i - 1].kind) + " and " + kindName(out.bindings[i].kind) + " (" +
-             out.bindings[i - 1].name + ", " + out.bindings[i].name + ")");
+      refuse("binding " + std::to_string(out.bindings[i].number) + " is both " + kindName(out.bindings[i - 1].kind) +
+             " and " + kindName(out.bindings[i].kind) + " (" + out.bindings[i - 1].name + ", " + out.bindings[i].name +
+             ")");
     }
   }
   return out;

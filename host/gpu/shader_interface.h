@@ -14,7 +14,7 @@ struct ShaderInterface {
   struct Binding {
     std::uint32_t number = 0;
     Kind kind = Kind::storage;
-    std::string name;      // as in the source, for messages; may be empty
+    std::string name;  // as in the source, for messages; may be empty
   };
   std::string entryPoint;
   std::vector<Binding> bindings;            // of set 0, by number

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "host/catalogue/catalogue.h"
 #include "host/carried/probe.h"
+#include "host/catalogue/catalogue.h"
 #include "host/scene/load.h"
 #include "host/study/bench.h"
 #include "host/study/pictures.h"

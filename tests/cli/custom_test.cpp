@@ -41,7 +41,8 @@ TEST_F(Custom, AnyFileByOption) {
   EXPECT_EQ(run(there).code, 0);
   EXPECT_EQ(readFile(folder_ / "b.pfm"), image);
 
-  expectError(run({"render", file, "--integrator", "custom", "-o", out}), 4, {"none.glsl: error: cannot be read"}, false);
+  expectError(run({"render", file, "--integrator", "custom", "-o", out}), 4, {"none.glsl: error: cannot be read"},
+              false);
   expectError(run({"render", file, "--integrator", "cast"}), 2,
               {"--integrator: \"cast\" is unknown, expected casting|castingdist|custom or a file *.glsl"});
   expectError(run({"render", scene(), "--integrator", "custom"}), 2, {"the scene names no GLSL", "expected"});
@@ -63,8 +64,9 @@ TEST_F(Custom, NanIsWarnedOfAndCounted) {
   ASSERT_EQ(done.code, 0) << done.err;
   const auto count = Json::parse(done.out).at("nan_colours").get<int>();
   EXPECT_GT(count, 100);
-  EXPECT_NE(done.err.find("solidcast: warning: " + std::to_string(count) + " colours are not a number, shown in magenta\n"),
-            std::string::npos)
+  EXPECT_NE(
+      done.err.find("solidcast: warning: " + std::to_string(count) + " colours are not a number, shown in magenta\n"),
+      std::string::npos)
       << done.err;
 }
 

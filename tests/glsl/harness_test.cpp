@@ -90,7 +90,8 @@ TEST_F(HarnessTest, ReadsArraysMacrosAndIncludes) {
   EXPECT_TRUE(
       contains(errorOf(Exit::usage, [&] { f.set("rows", std::vector<float>{1}); }), "is vec3, was given float"));
   EXPECT_TRUE(contains(errorOf(Exit::usage, [&] { f.set("lines", std::vector<float>{1}); }), "no array \"lines\""));
-  Function sphere(device(), "#include \"solidcast/numeric.glsl\"\nfloat f(float x) { return root(x); }", "float f(float x)");
+  Function sphere(device(), "#include \"solidcast/numeric.glsl\"\nfloat f(float x) { return root(x); }",
+                  "float f(float x)");
   EXPECT_EQ(sphere(std::vector<float>{9}).result().as<float>(), std::vector<float>{3});
 }
 

@@ -42,9 +42,10 @@ template <class Real>
 void correctlyRounded(const std::string& type, int arithmetic) {
   const auto function = [&](const std::string& operation, const std::string& parameters, const std::string& arguments) {
     const std::string signature = type + " f(" + parameters + ")";
-    return Function(device(),
-                    "#include \"solidcast/numeric.glsl\"\n" + signature + " { return " + operation + "(" + arguments + "); }",
-                    signature, {.defines = {{"ARITHMETIC", std::to_string(arithmetic)}}, .runs = 1});
+    return Function(
+        device(),
+        "#include \"solidcast/numeric.glsl\"\n" + signature + " { return " + operation + "(" + arguments + "); }",
+        signature, {.defines = {{"ARITHMETIC", std::to_string(arithmetic)}}, .runs = 1});
   };
   Operands operands(1);
   std::vector<Real> a, b, positive;
