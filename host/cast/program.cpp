@@ -161,7 +161,7 @@ std::vector<SearchPortion> portions(const Records& records, std::uint32_t limit)
 
 gpu::Buffer filledBuffer(gpu::Device& device, std::span<const std::byte> bytes, gpu::BufferUse use) {
   gpu::Buffer buffer = device.makeBuffer(std::max<std::size_t>(bytes.size(), 16), use);
-  std::memcpy(buffer.bytes().data(), bytes.data(), bytes.size());
+  std::copy(bytes.begin(), bytes.end(), buffer.bytes().begin());
   return buffer;
 }
 
