@@ -32,7 +32,7 @@ TEST(Bench, JsonHasARowForEverySceneAndMethod) {
     EXPECT_GE(row["dispatch_ms_max"], median);
     EXPECT_NEAR(row["mrays_per_s"].get<double>(), 64 * 48 / median / 1e3, 0.01 * 64 * 48 / median / 1e3);
     EXPECT_GT(row["image_ms_median"], 0);
-    EXPECT_EQ(row["device"].is_string(), i % 5 < 2);
+    EXPECT_EQ(row.contains("device"), i % 5 < 2);
     EXPECT_LE(row["pixels_off"], 10);
   }
   for (const char* phase : {"flatten_ms", "shader_ms", "first_dispatch_ms", "dispatch_ms", "readback_ms"})
