@@ -6,6 +6,7 @@
 #include <new>
 #include <numeric>
 
+#include "host/cli/heap.h"
 #include "host/cli/options.h"
 #include "host/cli/verbs.h"
 #include "host/error.h"
@@ -135,6 +136,7 @@ void tidyUpAndEnd(int number) {
 
 int main(int argc, char** argv) {
   using namespace solidcast;
+  cli::useLargePages();
   for (int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, cli::tidyUpAndEnd);
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is a failed write
   std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is a failed write, not a death in silence

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "host/bench/scenes.h"
+#include "host/cast/list_build.h"
 #include "host/cast/records.h"
 #include "host/cast/tiles.h"
 #include "host/image/writer.h"
@@ -37,6 +38,30 @@ void tiles(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 BENCHMARK(tiles)->RangeMultiplier(10)->Range(1000, 100000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// What ListSearch does anew for each picture: where all solids are seen, their records, and the lists of all tiles.
+void lists(benchmark::State& state, const char* kind, RealType type) {
+  std::vector<std::string> warnings;
+  const Scene scene = bench::sceneNamed("random:" + std::string(kind) + ":" + std::to_string(state.range(0)), warnings);
+  ListGrid grid;
+  grid.region = {0, 0, kWidth, kHeight};
+  grid.across = kWidth / ListGrid::tile, grid.down = kHeight / ListGrid::tile;
+  ListBuilder builder;
+  std::vector<std::byte> rows, lanes;
+  for (auto _ : state) {
+    const Silhouette silhouette(scene, kWidth, kHeight, 1);
+    builder.collect(scene, type, silhouette, grid);
+    const std::size_t laneCount = builder.listedTiles();
+    rows.resize(std::max(rows.size(), builder.rows() * rowBytes(type)));
+    lanes.resize(std::max(lanes.size(), laneCount * (1 + kindCount) * 16));
+    builder.write(rows, lanes, laneCount, builder.kinds());
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK_CAPTURE(lists, sphere fast, "sphere", RealType::f32)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(lists, sphere exact, "sphere", RealType::f64)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(lists, triangle fast, "triangle", RealType::f32)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(lists, triangle exact, "triangle", RealType::f64)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// A picture with soft shades, as casting makes them, to a file.
 void png(benchmark::State& state) {

@@ -1,0 +1,24 @@
+#include "host/cli/heap.h"
+
+#include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstdlib>
+
+namespace solidcast::cli {
+
+void useLargePages() {
+  constexpr int room = 64 << 20, most = 32 << 20;  // glibc takes no larger threshold
+  constexpr std::uintptr_t page = 2 << 20;
+  // Memory that goes back to the system comes back page by page.
+  if (!mallopt(M_TOP_PAD, room) || !mallopt(M_MMAP_THRESHOLD, most) || !mallopt(M_TRIM_THRESHOLD, 8 * room)) return;
+  const auto before = reinterpret_cast<std::uintptr_t>(sbrk(0));
+  void* volatile more = std::malloc(1 << 20);  // more than there is: the heap grows by `room`
+  std::free(more);
+  const auto from = (before + page - 1) / page * page, to = reinterpret_cast<std::uintptr_t>(sbrk(0)) / page * page;
+  if (from < to) madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);  // a wish: no matter if it is not heard
+}
+
+}  // namespace solidcast::cli
