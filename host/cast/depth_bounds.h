@@ -4,95 +4,70 @@
 //
 // Only what is certain counts: centres that lie inside a solid's projection by more than all rounding, that of `fast` in
 // the shader included, and solids that are behind by more than a near tie. Hence no ray's answer, and no doubt of
-// exact's about it, hangs on a solid that is left out.
+// exact's about it, hangs on a solid that is left out. (fast can see a solid at so flat an angle that its own rounding
+// puts it before what hides it; where it is left out, the picture is the right one.)
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <span>
 #include <vector>
 
-#include "host/cast/silhouette.h"
+#include "host/cast/footprints.h"
 
 namespace solidcast {
 
 class DepthBounds {
  public:
-  /// Pixels of the region, and padding up to stride x rows, which bounds nothing.
-  void start(const Silhouette& silhouette, const Crop& region, int stride, int rows, RealType type) {
-    silhouette_ = &silhouette;
-    region_ = region;
-    stride_ = static_cast<std::size_t>(stride);
-    const double finest = std::max(silhouette.pixelsPerSlopeX(), silhouette.pixelsPerSlopeY());
-    margin_ = 1e-3 + (type == RealType::f32 ? 4e-6 : 1e-12) * finest;
-    lost_ = type == RealType::f32 ? 0x1p-17 : 0x1p-40;
-    depth_.resize(stride_ * static_cast<std::size_t>(rows));
-    std::fill(depth_.begin(), depth_.end(), 0.f);
-    for (int y = 0; y < region.height; ++y)
-      std::fill_n(depth_.begin() + static_cast<std::ptrdiff_t>(y * stride_), region.width,
-                  std::numeric_limits<float>::infinity());
-  }
+  /// Pixels of the region, and padding up to stride x rows, which bounds nothing. `layered`: many solids lie one behind
+  /// the other.
+  void start(const Silhouette& silhouette, const Crop& region, int stride, int rows, RealType type, bool layered);
+  /// Depths of a row as they are now.
+  float* row(std::size_t y) { return depth_.data() + y * stride_; }
   const float* row(std::size_t y) const { return depth_.data() + y * stride_; }
 
-  /// Whether the solid seen in this rectangle is, in its middle, behind what is known already: its own depths are hardly
-  /// worth the work.
-  bool hidden(const Rectangle& r) const {
-    const double x = (r.x.from + r.x.to) * 0.5 - region_.x, y = (r.y.from + r.y.to) * 0.5 - region_.y;
-    if (!(x >= 0 && y >= 0 && x < region_.width && y < region_.height)) return false;
-    return depth_[static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x)] <= r.nearest;
+  /// Where hidden() will look.
+  const float* middle(const Footprint& f) const {
+    return row(static_cast<std::size_t>((f.y0 + f.y1) / 2)) + (f.x0 + f.x1) / 2;
   }
+  /// Whether to add the solid seen there: not where its middle is hidden already, and no more large ones when many have
+  /// been added. Small polygons, which cover hardly a tile, only where the scene has many layers.
+  bool worthIt(const Footprint& f, bool polygon) const {
+    const int width = f.x1 - f.x0 + 1, height = f.y1 - f.y0 + 1;
+    if (polygon && !layered_ && (width < 8 || height < 8)) return false;
+    return *middle(f) > f.hides && (double(width) * height < 4096 || work_ < most_);
+  }
+  /// Whether nothing of a small solid can be seen where `f` says: each of its pixels is known to be hit before. Of a larger
+  /// one, tile by tile, that is sooner seen from the tiles' limits.
+  bool hides(const Footprint& f) const;
 
+  static constexpr bool knows(const Shape& shape) {
+    return std::holds_alternative<Sphere>(shape) || std::holds_alternative<Triangle>(shape) ||
+           std::holds_alternative<Quad>(shape);
+  }
   template <class Solid>
   void add(const Solid&) {}
-
-  /// A disc through the centre, parallel to the image, is a circle there.
-  void add(const Sphere& sphere) {
-    const auto c = silhouette_->fromEye(sphere.center);
-    const double square = c.x * c.x + c.y * c.y + c.depth * c.depth, all = sphere.radius * sphere.radius;
-    // Of the squared radius, what the shader's rounding cannot take; from 16 radii on it has the form for far spheres.
-    const double held = all - lost_ * std::sqrt(square * std::min(square, 256 * all));
-    if (!(held > 0 && c.depth > 0 && square > all * 1.001)) return;
-    const double slope = 1 / c.depth, r = std::sqrt(held) * slope;
-    const double x = silhouette_->pixelX(c.x * slope) - region_.x, y = silhouette_->pixelY(c.y * slope) - region_.y;
-    const double wide = r * silhouette_->pixelsPerSlopeX() - margin_,
-                 high = r * silhouette_->pixelsPerSlopeY() - margin_;
-    if (!(wide > 0 && high > 0)) return;
-    const double each = 1 / high;
-    fill(y - high, y + high, bound(c.depth), [&](double middle, double& from, double& to) {
-      const double down = (middle - y) * each, half = wide * std::sqrt(std::max(0.0, 1 - down * down));
-      from = x - half, to = x + half;
-    });
-  }
+  void add(const Sphere& sphere);
+  void add(const Triangle& triangle);
+  void add(const Quad& quad);
 
  private:
-  static float bound(double depth) { return static_cast<float>(depth * (1 + 1e-6)); }
-
-  /// Pixels whose centres lie between `span` of their row, of rows from top to bottom.
-  void fill(double top, double bottom, float depth, const auto& span) {
-    const int first = atLeast(top, 0), last = atMost(bottom, region_.height - 1);
-    for (int y = first; y <= last; ++y) {
-      double from, to;
-      span(y + 0.5, from, to);
-      const int x1 = atMost(to, region_.width - 1);
-      float* at = depth_.data() + static_cast<std::size_t>(y) * stride_;
-      for (int x = atLeast(from, 0); x <= x1; ++x) at[x] = std::min(at[x], depth);
-    }
-  }
-  /// The first pixel whose centre is at `v` or beyond, and the last one not beyond.
-  static int atLeast(double v, int least) {
-    v = std::max(double(least), v - 0.5);
-    const int i = static_cast<int>(std::min(v, 1e9));
-    return i + (i < v);
-  }
-  static int atMost(double v, int most) {
-    v = std::min(double(most), v - 0.5);
-    return v < 0 ? -1 : static_cast<int>(v);
-  }
+  struct Corner {
+    double x, y, depth;  // in pixels of the region; along the forward axis
+  };
+  bool corner(const Triple& fromEye, Corner& to) const;
+  template <std::size_t CORNERS>
+  void polygon(const std::array<Corner, CORNERS>& corners, const Triple& normal, const Triple& point);
+  void fill(double top, double bottom, int widest, float depth, const auto& span);
 
   const Silhouette* silhouette_ = nullptr;
   Crop region_;
   std::size_t stride_ = 0;
-  double margin_ = 0;  // in pixels
-  double lost_ = 0;    // of a sphere's q, relative to its terms: what the shader's rounding can take
+  double margin_ = 0;           // in pixels
+  double steepest_ = 0;         // length of the longest of the directions (x, y, 1)
+  double lost_ = 0;             // of a sphere's q, relative to its terms: what the shader's rounding can take
+  double rounding_ = 0;         // of a flat solid's s, relative to s over the sine of the angle it is seen at
+  double work_ = 0, most_ = 0;  // pixels
+  bool layered_ = false;
   std::vector<float> depth_;
 };
 

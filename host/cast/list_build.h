@@ -33,8 +33,11 @@ struct ListSpan {
   std::uint32_t wideFirst, wideCount, first, count;  // rows; `count` is of both
 };
 
+struct ListLimits;
+
 class ListBuilder {
  public:
+  struct Part;  // a thread's share of the solids
   ListBuilder();
   ~ListBuilder();
 
@@ -62,9 +65,9 @@ class ListBuilder {
              const std::array<bool, kindCount>& slots);
 
  private:
-  struct Part;  // a thread's share of the solids
+  std::array<ListLimits, 2> limits() const;
   void limitTiles(std::size_t tileRow, std::size_t threads);
-  void limitWindows(std::size_t tileRow);
+  void limitWide(std::size_t wideRow);
   void layOut();
   void sortTiles();
 
@@ -76,7 +79,7 @@ class ListBuilder {
   std::size_t rows_ = 0, seen_ = 0, listed_ = 0;
   // [narrow 0 or wide 1][kind]: by tile, and for the wide ones the count beside
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> first_, count_;
-  std::vector<float> limits_, windows_;       // depth_bounds.h, by tile; the deepest of a few tiles
+  std::vector<float> limits_, wideLimits_;    // depth_bounds.h, by tile and by wide tile
   std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles by falling entries
 };
 

@@ -48,6 +48,11 @@ class Silhouette {
   struct P3 {
     double x, y, depth;  // camera axes, y down
   };
+  P3 toCamera(const Triple& p) const {
+    return {axes_[0][0] * p[0] + axes_[0][1] * p[1] + axes_[0][2] * p[2],
+            axes_[1][0] * p[0] + axes_[1][1] * p[1] + axes_[1][2] * p[2],
+            axes_[2][0] * p[0] + axes_[2][1] * p[1] + axes_[2][2] * p[2]};
+  }
   /// A point from the eye, and where the image has a slope x/depth or y/depth: in pixels. For perspective cameras.
   P3 fromEye(const Triple& p) const { return toCamera(difference(p, origin_)); }
   double pixelX(double slope) const { return slope * perX_ + middleX_; }
@@ -57,6 +62,14 @@ class Silhouette {
   /// Rays go through the centres of pixels alone, of a perspective camera of ordinary angles.
   bool centresAlone() const { return kind_ == CameraKind::perspective && !wide_ && slack_ < 0.5; }
   static bool inFront(const P3& p) { return p.depth > flat * size(p); }
+  /// What is wholly in front of the eye is seen where its slopes say.
+  bool slopesAreEnough() const { return kind_ == CameraKind::perspective && !wide_; }
+  struct PixelsOfSlopes {
+    double perX, perY, middleX, middleY, slack;
+  };
+  PixelsOfSlopes pixelsOfSlopes() const { return {perX_, perY_, middleX_, middleY_, slack_}; }
+  const Triple& origin() const { return origin_; }
+  const Triple (&axes() const)[3] { return axes_; }
 
  private:
   enum class CameraKind { perspective, orthographic, environment };  // as in Camera
@@ -64,12 +77,6 @@ class Silhouette {
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   /// Directions this close to the plane of the eye count as in it.
   static constexpr double flat = 1e-6;
-
-  P3 toCamera(const Triple& p) const {
-    return {axes_[0][0] * p[0] + axes_[0][1] * p[1] + axes_[0][2] * p[2],
-            axes_[1][0] * p[0] + axes_[1][1] * p[1] + axes_[1][2] * p[2],
-            axes_[2][0] * p[0] + axes_[2][1] * p[1] + axes_[2][2] * p[2]};
-  }
 
   template <class Corners>
   Rectangle ofCorners(const Corners& corners) const {

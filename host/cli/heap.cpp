@@ -18,7 +18,8 @@ void useLargePages() {
   void* volatile more = std::malloc(1 << 20);  // more than there is: the heap grows by `room`
   std::free(more);
   const auto from = (before + page - 1) / page * page, to = reinterpret_cast<std::uintptr_t>(sbrk(0)) / page * page;
-  if (from < to) madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);  // a wish: no matter if it is not heard
+  if (from < to)
+    madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);  // a wish: no matter if it is not heard
 }
 
 }  // namespace solidcast::cli

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "host/error.h"
+#include "host/scene/build.h"
 #include "host/scene/random.h"
 #include "tests/cast/fixture.h"
 
@@ -71,20 +72,41 @@ TEST_F(Lists, OfEveryKindFromOutsideFromWithinAndAllAround) {
   }
 }
 
-/// In a crowd most spheres are hidden and not listed (depth_bounds.h); their absence must not show, a wrong one's would.
+/// Solids that the lists hold, as the plan tells.
+int listed(const CastStats& stats) {
+  for (const std::string& line : stats.plan)
+    if (line.starts_with("lists of ")) return std::stoi(line.substr(9));
+  return -1;
+}
+
+/// In a crowd most solids are hidden and not listed (depth_bounds.h); their absence must not show, a wrong one's would.
 TEST_F(Lists, WhatIsHiddenIsLeftOutAndNotMissed) {
   const RenderJob job = small();
-  for (const char* kind : {"sphere", "mixed"}) {
+  for (const char* kind : {"sphere", "triangle", "quad", "mixed"}) {
     const Scene scene = randomScene(kind, 6000, 8);
     expectAsStorage(scene, job, kind);
     expectAsStorage(fromWithin(scene), job, std::string(kind) + " from within");
+    CastStats stats;
+    picture(scene, job, {.method = Method::fast, .plan = Plan::lists}, &stats);
+    EXPECT_GT(listed(stats), 100) << kind;
+    EXPECT_LT(listed(stats), kind == std::string("sphere") ? 2600 : 5700) << kind;
   }
+}
+
+/// Walls that fill the picture, one behind the other and slanted: they are in wide tiles, and hide each other there.
+TEST_F(Lists, WallsHideWallsAndWhatIsBehindThem) {
+  Scene scene = randomScene("sphere", 3000, 9);
+  for (int i = 0; i < 40; ++i) {
+    const double z = 20 - i * 0.4, slant = 0.02 * (i % 5 - 2);
+    addSolid(scene.world, Quad{{-9, -9, z}, {18, 0, 18 * slant}, {0, 18, -18 * slant}});
+    addSolid(scene.world, Triangle{{-30, -9, z - 0.2}, {30, -9, z - 0.2 + slant}, {0, 40, z - 0.2}});
+  }
+  const RenderJob job = small();
+  expectAsStorage(scene, job, "walls");
   CastStats stats;
-  picture(randomScene("sphere", 6000, 8), job, {.method = Method::fast, .plan = Plan::lists}, &stats);
-  const auto line = std::find_if(stats.plan.begin(), stats.plan.end(),
-                                 [](const std::string& l) { return l.rfind("lists of ", 0) == 0; });
-  ASSERT_NE(line, stats.plan.end());
-  EXPECT_LT(std::stoi(line->substr(9)), 3000) << *line;
+  picture(scene, job, {.method = Method::fast, .plan = Plan::lists}, &stats);
+  EXPECT_GT(listed(stats), 1);
+  EXPECT_LT(listed(stats), 100);
 }
 
 TEST_F(Lists, SamplesTwoSidedAndBands) {

@@ -23,7 +23,8 @@ Span<T> span(const Triangle& t) {
 /// of its points, over num.
 template <class T>
 void spanForms(const Span<T>& s, bool quad, const Frame<T>& eye, T index, EyeRecord<T>& out) {
-  Vec3<T> f = (s.v1 - eye.origin) / eye.unit, e1 = s.e1 / eye.unit, e2 = s.e2 / eye.unit;
+  const T scale = 1 / eye.unit;  // a power of two: exact
+  Vec3<T> f = (s.v1 - eye.origin) * scale, e1 = s.e1 * scale, e2 = s.e2 * scale;
   Vec3<T> n = cross(e1, e2);
   T num = dot(n, f), area = length(n), l1 = length(e1), l2 = length(e2), reach = length(f);
   out.counts(area, l1 * l2);

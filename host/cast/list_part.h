@@ -1,0 +1,86 @@
+// A thread's share of list building: the solids of one stretch of the scene, in their order.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "host/cast/depth_bounds.h"
+#include "host/cast/list_build.h"
+
+namespace solidcast {
+
+enum ListLevel : std::size_t { narrow, wide };
+
+/// Rows of a kind's record for one eye.
+std::uint32_t eyeRowsOf(std::size_t kind);
+
+/// Of the tiles of a level, `side` pixels each, the depth beyond which nothing is seen of each; none: no limits.
+struct ListLimits {
+  const float* byTile = nullptr;
+  std::size_t across = 0;
+  int side = 0;
+};
+
+/// Bytes at the end of which more are put, without being cleared first.
+class Arena {
+ public:
+  std::byte* add(std::size_t bytes) {
+    if (used_ + bytes > room_) {
+      room_ = std::max<std::size_t>({2 * room_, used_ + bytes, std::size_t{1} << 16});
+      auto bigger = std::make_unique_for_overwrite<std::byte[]>(room_);
+      std::memcpy(bigger.get(), data_.get(), used_);
+      data_ = std::move(bigger);
+    }
+    std::byte* to = data_.get() + used_;
+    used_ += bytes;
+    return to;
+  }
+  void clear() { used_ = 0; }
+  std::span<const std::byte> bytes() const { return {data_.get(), used_}; }
+
+ private:
+  std::unique_ptr<std::byte[]> data_ = std::make_unique_for_overwrite<std::byte[]>(16);
+  std::size_t room_ = 16, used_ = 0;
+};
+
+struct ListBuilder::Part {
+  struct Head {
+    std::uint32_t solid;
+    Footprint seen;
+  };
+  struct Place {  // tiles, first and last, that are to have the record unless it begins beyond what is seen of them
+    std::uint32_t x0, y0, x1, y1;
+    float nearest;
+    std::uint32_t unused;
+  };
+  using Limits = std::array<ListLimits, 2>;  // by level
+
+  DepthBounds depths;
+  std::array<std::vector<Head>, 2> heads;                                  // of all that is seen
+  std::array<std::array<Arena, kindCount>, 2> found;                       // Place and record, one after the other
+  std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> tiles;  // entries by tile; then where the next goes
+  bool grazing = false, farSphere = false, boxOnFace = false;
+  std::size_t seen = 0;
+
+  void start();
+  /// Where each solid is seen, and what it hides.
+  void look(const World& world, std::size_t from, std::size_t to, const Silhouette& silhouette, const EyeFrames& eye,
+            const ListGrid& grid, bool hiding);
+  /// Records of the solids that are in front of the depth limit of one of their tiles, and not `hidden` in every pixel.
+  void pack(const World& world, RealType type, const EyeFrames& eye, const ListGrid& grid, const Limits& limits,
+            const DepthBounds* hidden);
+  /// Copies every record to its tiles; tiles[][] says where each tile's next one goes.
+  void write(std::byte* rows, std::size_t rowSize, const Limits& limits);
+
+ private:
+  template <class T>
+  void add(const EyeRecord<T>& record, const Head& head, ListLevel level, const ListGrid& grid,
+           const ListLimits& limits);
+
+  std::vector<std::uint32_t> reached_;  // of heads
+};
+
+}  // namespace solidcast
