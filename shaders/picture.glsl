@@ -4,7 +4,7 @@
 #ifndef SOLIDCAST_PICTURE
 #define SOLIDCAST_PICTURE
 
-#define INTEGRATOR(NUMBER, name, Type) const uint name##_number = NUMBER;
+#define INTEGRATOR(NUMBER, name, Type, CHANNELS) const uint name##_number = NUMBER;
 #include "integrators.def"
 #undef INTEGRATOR
 #include "integrators/casting.glsl"
@@ -23,6 +23,7 @@ layout(constant_id = 26) const uint SAMPLES = 1u;     // per pixel and axis
 layout(constant_id = 27) const uint WANTED = 1u;      // bits: rgb8, radiance, distance, solid, normal, local, position
 layout(constant_id = 28) const float DOUBT = 0.0;     // the bound of decided() and decidedAgainst()
 layout(constant_id = 29) const bool HITS_IN_DOUBT = false;  // arithmetic too coarse for t: all hits to the second pass
+layout(constant_id = 36) const bool GREY = false;  // rgb8: a byte a pixel, in the first quarter of the plane
 #define RGB8 1u
 #define RADIANCE 2u
 #define DISTANCE 4u
@@ -128,7 +129,7 @@ vec3 radiance(Result result) {  // of a ray that hits
   Parameters parameters = Parameters(vec3(toFloat(near.x), toFloat(near.y), toFloat(near.z)), toFloat(near.w),
                                      vec3(toFloat(far.x), toFloat(far.y), toFloat(far.z)), toFloat(far.w));
   vec3 colour = vec3(0.0);
-#define INTEGRATOR(NUMBER, name, Type) \
+#define INTEGRATOR(NUMBER, name, Type, CHANNELS) \
   if (INTEGRATOR_NUMBER == name##_number) colour = name##_radiance(shading, parameters);
 #include "integrators.def"
 #undef INTEGRATOR
@@ -167,7 +168,23 @@ uint storeRow(uint pixel, inout Result result[STORED]) {
     colour[k] = radiance(result[k]);
   }
 
-  if ((WANTED & RGB8) != 0u) {
+  if ((WANTED & RGB8) != 0u && GREY) {
+    // Stores are what is left of a small scene's time on llvmpipe, which does them word by word and lane by lane.
+    uvec4 four;
+    EACH_FOUR {
+      bool some = false;
+      uint bytes = 0u;
+      UNROLL for (uint k = 0u; k < 4u; ++k) {
+        Result r = result[4u * q + k];
+        bytes |= (r.hit ? level(colour[4u * q + k].r) : 0u) << (8u * k);
+        some = some || r.hit;
+      }
+      four[q] = some ? bytes : 0u;  // a selection last, as below
+    }
+    if (STORED == 16u) image[base / 4u] = four;
+    else EACH_FOUR image[base / 4u][base % 4u + q] = four[q];
+    base += plane;
+  } else if ((WANTED & RGB8) != 0u) {
     EACH_FOUR {
       uvec4 packed;
       UNROLL for (uint k = 0u; k < 4u; ++k) {

@@ -109,6 +109,7 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   constants[viewRaws] = static_cast<std::uint32_t>(viewRaws_);
   const bool radiance = job_.wanted & (RGB8 | RADIANCE);
   constants[integratorNumber] = radiance ? static_cast<std::uint32_t>(scene_->integrator.index()) : 0;
+  constants[greyLevels] = isGrey(*scene_);
   constants[twoSided] = job_.job.twoSided;
   constants[samples] = u(job_.samples);
   constants[wanted] = job_.wanted;

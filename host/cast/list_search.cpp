@@ -123,6 +123,7 @@ void ListSearch::makePipeline() {
   constants[portioned] = portioned_;
   const bool radiance = job_.wanted & (RGB8 | RADIANCE);
   constants[integratorNumber] = radiance ? static_cast<std::uint32_t>(scene_->integrator.index()) : 0;
+  constants[greyLevels] = isGrey(*scene_);
   constants[twoSided] = job_.job.twoSided;
   constants[samples] = u(job_.samples);
   constants[wanted] = job_.wanted;
@@ -149,7 +150,18 @@ void ListSearch::fillUnlisted(const PassTarget& target, int firstRow) const {
           std::fill_n(plane + row * stride + x, ListGrid::tile, value);
       }
   };
-  if (job_.wanted & RGB8) fill(1, 0);
+  if (job_.wanted & RGB8) {
+    if (isGrey(*scene_)) {
+      std::uint32_t* const words4 = plane;  // four pixels a word
+      for (const std::uint32_t tile : builder_.tiles().subspan(lanes_)) {
+        const std::size_t y = u(firstRow) + tile / across * ListGrid::tile, x = tile % across;
+        for (std::size_t row = y; row < y + ListGrid::tile; ++row) words4[row * across + x] = 0;
+      }
+      plane += words;
+    } else {
+      fill(1, 0);
+    }
+  }
   if (job_.wanted & RADIANCE) fill(3, 0);
   if (job_.wanted & DISTANCE) fill(1, std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()));
   if (job_.wanted & SOLID) fill(1, ~0u);

@@ -20,6 +20,15 @@ std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
 
 }  // namespace
 
+bool isGrey(const Scene& scene) {
+  static constexpr int channels[] = {
+#define INTEGRATOR(NUMBER, name, Type, CHANNELS) CHANNELS,
+#include "shaders/integrators.def"
+#undef INTEGRATOR
+  };
+  return channels[scene.integrator.index()] == 1;
+}
+
 std::uint8_t toLevel(float v) { return static_cast<std::uint8_t>((v < 0 ? 0.f : v > 1 ? 1.f : v) * 255.f); }
 
 Pass::Pass(gpu::Device& device, const Scene& scene, const RenderJob& job, const Crop& crop, const CastOptions& options,
@@ -166,7 +175,8 @@ void Pass::read(Band& band) const {
     plane += words * u(count);
   };
   if (wanted_ & RGB8) {
-    readLevels(plane, stride_, band, band.rgb8);
+    if (isGrey(*scene_)) readGreys(reinterpret_cast<const std::uint8_t*>(plane), stride_, band, band.rgb8);
+    else readLevels(plane, stride_, band, band.rgb8);
     plane += words;
   }
   channel(RADIANCE, 3, band.radiance);

@@ -20,6 +20,9 @@ enum Wanted : std::uint32_t { RGB8 = 1, RADIANCE = 2, DISTANCE = 4, SOLID = 8, N
 inline constexpr int groupWidth = 128, groupRows = 8;
 constexpr int padded(int n, int to) { return (n + to - 1) / to * to; }
 
+/// Whether colours of 8 bits are stored as one byte a pixel: the scene's integrator knows grey alone.
+bool isGrey(const Scene& scene);
+
 /// Where a dispatch stores.
 struct PassTarget {
   const gpu::Buffer& image;   // planes of stride x rows words

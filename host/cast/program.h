@@ -49,7 +49,8 @@ enum Constant : std::uint32_t {
   someTie,
   held,
   portioned,
-  someFarSphere
+  someFarSphere,
+  greyLevels
 };
 std::uint32_t bits(float value);
 
