@@ -170,7 +170,7 @@ uint storeRow(uint pixel, inout Result result[STORED]) {
 
   if ((WANTED & RGB8) != 0u && GREY) {
     // Stores are what is left of a small scene's time on llvmpipe, which does them word by word and lane by lane.
-    uvec4 four;
+    uint four[STORED / 4u];
     EACH_FOUR {
       bool some = false;
       uint bytes = 0u;
@@ -181,8 +181,12 @@ uint storeRow(uint pixel, inout Result result[STORED]) {
       }
       four[q] = some ? bytes : 0u;  // a selection last, as below
     }
-    if (STORED == 16u) image[base / 4u] = four;
-    else EACH_FOUR image[base / 4u][base % 4u + q] = four[q];
+    if (STORED >= 16u) {
+      UNROLL for (uint q = 0u; q < STORED / 4u; q += 4u)
+        image[base / 4u + q / 4u] = uvec4(four[q], four[q + 1u], four[q + 2u], four[q + 3u]);
+    } else {
+      EACH_FOUR image[base / 4u][base % 4u + q] = four[q];
+    }
     base += plane;
   } else if ((WANTED & RGB8) != 0u) {
     EACH_FOUR {
