@@ -3,7 +3,8 @@
 // load of a record serves sixteen rays. The host makes the lists (host/cast/list_build.h): a list a kind, and of each
 // kind two, the solids of the wide tile that this one lies in (they are seen large) and its own.
 //
-// Compiled in variants (shaders/CMakeLists.txt): METHOD 1 fast, 2 exact; ARITHMETIC 0, 1; CAMERA 0, 1; STORAGE 2 records and
+// Compiled in variants (shaders/CMakeLists.txt): METHOD 1 fast, 2 exact; ARITHMETIC 0, 1; CAMERA as in pixels.comp (rays of an
+// orthographic one are free: their lists hold world records, and each ray brings its own origin); STORAGE 2 records and
 // lists in texel buffers, which llvmpipe reads quicker, its loops over the rays unrolled; 3 in storage buffers, its loops left as
 // they are, for other devices.
 #extension GL_GOOGLE_include_directive : require
@@ -12,8 +13,8 @@
 #if METHOD == 2
 #define EXACT
 #endif
-#define FREE 0
-#define EYE 1
+#define FREE (CAMERA == 2)
+#define EYE (!FREE)
 #define WORLD 0
 #define HITS 0
 
@@ -54,18 +55,34 @@ void main() {
   int at = int(gl_GlobalInvocationID.x) * int(portion.listTexels);
   uvec4 tile = LIST_TEXEL(at);
 
+#if FREE
+#define TEST(kind, entry) kind##_free(entry, ray[k], best[k])
+#define ROWS(EYE_ROWS, WORLD_ROWS) WORLD_ROWS
+  FreeRay ray[RAYS];
+#else
+#define TEST(kind, entry) kind##_eye(entry, ray[k], best[k])
+#define ROWS(EYE_ROWS, WORLD_ROWS) EYE_ROWS
   EyeRay ray[RAYS];
+#endif
   Best best[RAYS];
   UNROLL for (int k = 0; k < RAYS; ++k) {
     uint column = (portion.firstX + tile.x + uint(k % 4)) * SAMPLES + portion.sampleX;
     uint row = (portion.firstY + tile.y + uint(k / 4)) * SAMPLES + portion.sampleY;
-    ray[k].direction = cameraRay(column, row).direction;
+    CameraRay camera = cameraRay(column, row);
+#if FREE
+    ray[k].origin = camera.origin;
+    ray[k].direction = combine(camera.direction.x, camera.direction.y, camera.direction.z);
+    ray[k].squared = dot3(ray[k].direction, ray[k].direction);
+    ray[k].reach = length3(camera.origin);
+#else
+    ray[k].direction = camera.direction;
     ray[k].squared = linear(ray[k].direction, ray[k].direction);
     if (BOX_COUNT > 0u) {
       ray[k].world = combine(ray[k].direction.x, ray[k].direction.y, ray[k].direction.z);
     } else {
       ray[k].world = ray[k].direction;
     }
+#endif
     best[k] = noHit();
     if (PORTIONED) {
       if (portion.from > 0u) best[k] = state[gl_GlobalInvocationID.x * RAYS + uint(k)];
@@ -82,11 +99,12 @@ void main() {
       end = min(max(portion.to, done) - done, list.w);                                           \
       done += list.w;                                                                            \
     }                                                                                            \
-    uint entry = i < list.y ? list.x + i * EYE_ROWS : list.z + (i - list.y) * EYE_ROWS;          \
+    uint rows = ROWS(EYE_ROWS, WORLD_ROWS);                                                      \
+    uint entry = i < list.y ? list.x + i * rows : list.z + (i - list.y) * rows;                  \
     while (i < end) {                                                                            \
       entry = i == list.y ? list.z : entry;                                                      \
-      UNROLL for (int k = 0; k < RAYS; ++k) kind##_eye(entry, ray[k], best[k]);                  \
-      entry += EYE_ROWS;                                                                         \
+      UNROLL for (int k = 0; k < RAYS; ++k) TEST(kind, entry);                                   \
+      entry += rows;                                                                             \
       ++i;                                                                                       \
     }                                                                                            \
   }

@@ -50,6 +50,7 @@ real4 record(uint row) {
   return uintBitsToFloat(RECORD_TEXEL(row));
 #endif
 }
+real4 worldRecord(uint row) { return record(row); }  // the lists of free rays hold nothing else
 #elif EYE
 RECORDS(0, Records, records, RECORD_RAWS);
 #if STORAGE

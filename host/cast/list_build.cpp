@@ -55,9 +55,10 @@ ListBuilder::ListBuilder() {
 }
 ListBuilder::~ListBuilder() = default;
 
-void ListBuilder::collect(const Scene& scene, RealType type, const Silhouette& silhouette, const ListGrid& grid) {
-  grid_ = grid, type_ = type;
-  const EyeFrames eye(eyeFrame(scene, type));
+void ListBuilder::collect(const Scene& scene, RealType type, bool eyeForms, const Silhouette& silhouette,
+                          const ListGrid& grid) {
+  grid_ = grid, type_ = type, eyeForms_ = eyeForms;
+  const EyeFrames eye(eyeFrame(scene, eyeForms ? type : RealType::f64));
   const std::size_t solids = scene.world.solids.size(), threads = solids < 256 ? 1 : parts_.size();
   for (auto& part : parts_) part->start();
   const std::size_t pixels = static_cast<std::size_t>(grid.region.width) * static_cast<std::size_t>(grid.region.height);
@@ -83,7 +84,7 @@ void ListBuilder::collect(const Scene& scene, RealType type, const Silhouette& s
       for (std::size_t y = wideDown * t / threads; y < wideDown * (t + 1) / threads; ++y) limitWide(y);
       together.arrive_and_wait();
     }
-    part.pack(scene.world, type, eye, grid, limits(), hiding_ ? &parts_[0]->depths : nullptr);
+    part.pack(scene.world, type, eyeForms, eye, grid, limits(), hiding_ ? &parts_[0]->depths : nullptr);
   });
   grazing_ = farSphere_ = boxOnFace_ = false;
   seen_ = 0;
@@ -156,7 +157,7 @@ void ListBuilder::layOut() {
         for (std::uint32_t* of : counts) {
           const std::uint32_t entries = of[tile];
           of[tile] = static_cast<std::uint32_t>(row);
-          row += std::size_t{entries} * eyeRowsOf(kind);
+          row += std::size_t{entries} * rowsOf(kind, eyeForms_);
           here += entries;
         }
         count[tile] = here;
@@ -216,7 +217,7 @@ void ListBuilder::write(std::span<std::byte> rows, std::span<std::byte> lanes, s
       }
     }
     for (std::size_t part = t; part < parts_.size(); part += threads)
-      parts_[part]->write(rows.data(), rowBytes(type_), limits());
+      parts_[part]->write(rows.data(), rowBytes(type_), eyeForms_, limits());
   });
 }
 

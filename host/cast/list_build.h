@@ -41,9 +41,9 @@ class ListBuilder {
   ListBuilder();
   ~ListBuilder();
 
-  /// Which solids are seen where, and their records. The records are correct to 2^-3 of the type's rounding
-  /// (docs/numerics.md).
-  void collect(const Scene& scene, RealType type, const Silhouette& silhouette, const ListGrid& grid);
+  /// Which solids are seen where, and their records: forms for the camera's one eye, correct to 2^-3 of the type's
+  /// rounding (docs/numerics.md), or the solids themselves from the camera's centre, for rays that are free.
+  void collect(const Scene& scene, RealType type, bool eyeForms, const Silhouette& silhouette, const ListGrid& grid);
 
   // What collect() found:
   std::array<bool, kindCount> kinds() const { return kinds_; }
@@ -73,6 +73,7 @@ class ListBuilder {
 
   ListGrid grid_;
   RealType type_{};
+  bool eyeForms_ = true;
   std::vector<std::unique_ptr<Part>> parts_;
   std::array<bool, kindCount> kinds_{};
   bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, wideOnes_ = false, hiding_ = false;

@@ -5,13 +5,13 @@
 namespace solidcast {
 namespace {
 
-constexpr std::uint32_t rowsOfKind[kindCount] = {
-#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) EYE_ROWS,
+constexpr std::uint32_t rowsOfKind[kindCount][2] = {
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) {WORLD_ROWS, EYE_ROWS},
 #include "shaders/solids.def"
 #undef SOLID
 };
 #define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) \
-  static_assert(EYE_ROWS == 2 || EYE_ROWS == 4 || EYE_ROWS == 5, "Part::write knows these");
+  static_assert(EYE_ROWS >= 2 && EYE_ROWS <= 5 && WORLD_ROWS >= 2 && WORLD_ROWS <= 5, "writeRows knows these");
 #include "shaders/solids.def"
 #undef SOLID
 
@@ -70,13 +70,14 @@ template <std::size_t ROW_SIZE>
 void writeRows(std::span<const std::byte> from, std::uint32_t rowCount, std::byte* rows, std::uint32_t* next,
                const ListLimits& limits) {
   if (rowCount == 2) writeAs<ROW_SIZE, 2>(from, rows, next, limits);
+  else if (rowCount == 3) writeAs<ROW_SIZE, 3>(from, rows, next, limits);
   else if (rowCount == 4) writeAs<ROW_SIZE, 4>(from, rows, next, limits);
   else writeAs<ROW_SIZE, 5>(from, rows, next, limits);
 }
 
 }  // namespace
 
-std::uint32_t eyeRowsOf(std::size_t kind) { return rowsOfKind[kind]; }
+std::uint32_t rowsOf(std::size_t kind, bool eyeForms) { return rowsOfKind[kind][eyeForms]; }
 
 void ListBuilder::Part::start() {
   grazing = farSphere = boxOnFace = false;
@@ -115,10 +116,11 @@ void ListBuilder::Part::look(const World& world, std::size_t from, std::size_t t
   farSphere = footprints.farSphere();
 }
 
-void ListBuilder::Part::pack(const World& world, RealType type, const EyeFrames& eye, const ListGrid& grid,
-                             const Limits& limits, const DepthBounds* hidden) {
+void ListBuilder::Part::pack(const World& world, RealType type, bool eyeForms, const EyeFrames& eye,
+                             const ListGrid& grid, const Limits& limits, const DepthBounds* hidden) {
   // Those that are left lie far apart in memory: they are fetched a few ahead.
   constexpr std::size_t ahead = 8;
+  const std::size_t rowSize = rowBytes(type);
   for (const ListLevel level : {wide, narrow}) {
     const std::vector<Head>& all = heads[level];
     reached_.clear();
@@ -130,8 +132,20 @@ void ListBuilder::Part::pack(const World& world, RealType type, const EyeFrames&
       if (i + ahead < reached_.size()) fetch(world.solids[all[reached_[i + ahead]].solid]);
       std::visit(
           [&](const auto& solid) {
-            packed(solid, eye, head.solid, type,
-                   [&](const auto& record) { add(record, head, level, grid, limits[level]); });
+            if (!eyeForms) {
+              RowWriter rows(type);
+              packWorld(solid, eye.exact.origin, head.solid, rows);
+              const auto kind = static_cast<std::size_t>(kindNumber(solid));
+              std::ranges::copy(rows.bytes(), add(kind, rows.bytes().size(), head, level, grid, limits[level]));
+              return;
+            }
+            packed(solid, eye, head.solid, type, [&](const auto& record) {
+              if (record.kind < 0) return;
+              grazing = grazing || record.grazing;
+              std::byte* to = add(static_cast<std::size_t>(record.kind),
+                                  rowSize * static_cast<std::size_t>(record.rows), head, level, grid, limits[level]);
+              for (int r = 0; r < record.rows; ++r, to += rowSize) writeRow(to, type, record.row[r]);
+            });
             if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
               boxOnFace = boxOnFace || eyeOnFacePlane(solid, eye.extended);
           },
@@ -140,34 +154,29 @@ void ListBuilder::Part::pack(const World& world, RealType type, const EyeFrames&
   }
 }
 
-template <class T>
-void ListBuilder::Part::add(const EyeRecord<T>& record, const Head& head, ListLevel level, const ListGrid& grid,
-                            const ListLimits& limits) {
-  if (record.kind < 0) return;
-  const auto kind = static_cast<std::size_t>(record.kind);
+std::byte* ListBuilder::Part::add(std::size_t kind, std::size_t bytes, const Head& head, ListLevel level,
+                                  const ListGrid& grid, const ListLimits& limits) {
   ++seen;
-  grazing = grazing || record.grazing;
-  const std::size_t rowSize = rowBytes(record.type);
   const Place place = placeOf(head.seen, limits);
-  std::byte* to = found[level][kind].add(sizeof place + rowSize * rowsOfKind[kind]);
+  std::byte* to = found[level][kind].add(sizeof place + bytes);
   std::memcpy(to, &place, sizeof place);
-  for (int r = 0; r < record.rows; ++r) writeRow(to + sizeof place + rowSize * r, record.type, record.row[r]);
   auto& counts = tiles[level][kind];
   if (counts.empty())
     counts.assign(
         level == wide ? std::size_t{1} * grid.wideAcross() * grid.wideDown() : std::size_t{1} * grid.across * grid.down,
         0);
   eachTile(place, limits, [&](std::size_t tile) { ++counts[tile]; });
+  return to + sizeof place;
 }
 
-void ListBuilder::Part::write(std::byte* rows, std::size_t rowSize, const Limits& limits) {
+void ListBuilder::Part::write(std::byte* rows, std::size_t rowSize, bool eyeForms, const Limits& limits) {
   for (const ListLevel level : {narrow, wide})
     for (std::size_t kind = 0; kind < kindCount; ++kind) {
       const auto bytes = found[level][kind].bytes();
       if (bytes.empty()) continue;
       std::uint32_t* next = tiles[level][kind].data();
-      if (rowSize == 16) writeRows<16>(bytes, rowsOfKind[kind], rows, next, limits[level]);
-      else writeRows<32>(bytes, rowsOfKind[kind], rows, next, limits[level]);
+      if (rowSize == 16) writeRows<16>(bytes, rowsOf(kind, eyeForms), rows, next, limits[level]);
+      else writeRows<32>(bytes, rowsOf(kind, eyeForms), rows, next, limits[level]);
     }
 }
 

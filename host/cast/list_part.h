@@ -14,8 +14,8 @@ namespace solidcast {
 
 enum ListLevel : std::size_t { narrow, wide };
 
-/// Rows of a kind's record for one eye.
-std::uint32_t eyeRowsOf(std::size_t kind);
+/// Rows of a kind's record: for one eye, or of the solid itself, for rays that are free.
+std::uint32_t rowsOf(std::size_t kind, bool eyeForms);
 
 /// Of the tiles of a level, `side` pixels each, the depth beyond which nothing is seen of each; none: no limits.
 struct ListLimits {
@@ -70,15 +70,15 @@ struct ListBuilder::Part {
   void look(const World& world, std::size_t from, std::size_t to, const Silhouette& silhouette, const EyeFrames& eye,
             const ListGrid& grid, bool hiding);
   /// Records of the solids that are in front of the depth limit of one of their tiles, and not `hidden` in every pixel.
-  void pack(const World& world, RealType type, const EyeFrames& eye, const ListGrid& grid, const Limits& limits,
-            const DepthBounds* hidden);
+  void pack(const World& world, RealType type, bool eyeForms, const EyeFrames& eye, const ListGrid& grid,
+            const Limits& limits, const DepthBounds* hidden);
   /// Copies every record to its tiles; tiles[][] says where each tile's next one goes.
-  void write(std::byte* rows, std::size_t rowSize, const Limits& limits);
+  void write(std::byte* rows, std::size_t rowSize, bool eyeForms, const Limits& limits);
 
  private:
-  template <class T>
-  void add(const EyeRecord<T>& record, const Head& head, ListLevel level, const ListGrid& grid,
-           const ListLimits& limits);
+  /// Room for a record of so many bytes, noted in the solid's tiles.
+  std::byte* add(std::size_t kind, std::size_t bytes, const Head& head, ListLevel level, const ListGrid& grid,
+                 const ListLimits& limits);
 
   std::vector<std::uint32_t> reached_;  // of heads
 };

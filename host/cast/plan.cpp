@@ -122,9 +122,15 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
     }
     case Plan::lists: {
       const bool fast = f.program.method == Method::fast;
-      cost.prepare_ms = (f.moving ? f.pictures : 1) * (0.3 + n * (fast ? 5e-5 : 3e-4)) + listsPipelineMs;
-      cost.rays_ms = rays * (fast ? 8e-6 : 1.4e-5) + f.count[0] * rays * perSolid;  // planes are in every list
-      if (!f.program.eye()) cost.impossible = "rays without a common origin have no lists";
+      // Records of free rays are made in binary128.
+      const double perRecord = f.program.eye() ? (fast ? 5e-5 : 3e-4) : flattenUs * 1e-3 / 2;
+      cost.prepare_ms = (f.moving ? f.pictures : 1) * (0.3 + n * perRecord) + listsPipelineMs;
+      cost.rays_ms = rays * (fast ? 8e-6 : 1.4e-5) * (f.program.eye() ? 1 : 4) +
+                     f.count[0] * rays * perSolid;  // planes are in every list
+      if (f.program.job == Job::rays) cost.impossible = "free rays have no screen";
+      else if (f.program.method == Method::naive) cost.impossible = "naive tries all solids";
+      else if (!f.program.eye() && f.program.method == Method::exact && f.program.real != RealType::f64)
+        cost.impossible = "exact without fp64 and without a common origin has no lists";
       else if (f.program.hits) cost.impossible = "normals come from world records, of which lists have none";
       else if (f.program.real == RealType::df32) cost.impossible = "double-float takes seconds to compile";
       break;

@@ -174,14 +174,27 @@ TEST_F(Lists, LongerThanTheDriverWalks) {
     }
 }
 
-TEST_F(Lists, AreForCamerasWithOneEye) {
+/// Rays without a common origin: the lists hold the solids themselves.
+TEST_F(Lists, OfOrthographicCameras) {
+  RenderJob job = small();
+  expectAsStorage(loaded("orthographic.json"), job, "orthographic");
+  for (const std::string& kind : randomKinds()) {
+    Scene scene = randomScene(kind, kind == "plane" ? 20 : 300, 5);
+    scene.camera = OrthographicCamera{{1, 2, 30}, {0.02, -0.05, -1}, {0, 1, 0}, 24, 18};
+    expectAsStorage(scene, job, kind);
+    scene.camera = OrthographicCamera{{0.3, -0.2, 0.1}, {1, 0.2, -1}, {0, 1, 0}, 3, 2};
+    job.samples = kind == "mixed" ? 2 : 1;
+    expectAsStorage(scene, job, kind + " from within");
+  }
+}
+
+TEST_F(Lists, AreNotForTheYardstick) {
   try {
-    const Scene scene = loaded("orthographic.json");
-    picture(scene, small(), {.plan = Plan::lists});
+    picture(loaded("a_solids.json"), small(), {.method = Method::naive, .plan = Plan::lists});
     FAIL() << "not refused";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), Exit::usage);
-    EXPECT_NE(std::string(error.what()).find("--plan lists: not possible here: "), std::string::npos) << error.what();
+    EXPECT_STREQ(error.what(), "--plan lists: not possible here: naive tries all solids");
   }
 }
 

@@ -50,6 +50,8 @@ TEST(Plan, ManySolidsGoByListsOrTiles) {
     PlanFacts f = facts(100000, real);
     EXPECT_EQ(choosePlan(f, Plan::automatic).plan, Plan::lists);
     f.program.camera = 2;  // no common eye
+    EXPECT_EQ(choosePlan(f, Plan::automatic).plan, Plan::lists);
+    f.program.method = Method::naive;
     EXPECT_EQ(choosePlan(f, Plan::automatic).plan, Plan::tiles);
   }
 }
@@ -71,7 +73,7 @@ TEST(Plan, FreeRaysGetAnIndexWhereItPays) {
     f.count[1] = n;
     EXPECT_EQ(choosePlan(f, Plan::automatic).plan, Plan::index);
   }
-  for (const Plan plan : {Plan::baked, Plan::tiles}) EXPECT_THROW(choosePlan(f, plan), Error);
+  for (const Plan plan : {Plan::baked, Plan::tiles, Plan::lists}) EXPECT_THROW(choosePlan(f, plan), Error);
   EXPECT_THROW(choosePlan(facts(1000), Plan::index), Error) << "pictures have none";
 }
 
