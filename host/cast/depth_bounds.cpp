@@ -44,6 +44,7 @@ void DepthBounds::start(const Silhouette& silhouette, const Crop& region, int st
   lost_ = type == RealType::f32 ? 0x1p-17 : 0x1p-40;
   rounding_ = 8 * unitRoundoff(type);
   layered_ = layered;
+  deepest2_.clear();
   work_ = 0;
   most_ = 8.0 * region.width * region.height;
   depth_.resize(stride_ * static_cast<std::size_t>(rows) + fixedSpan + 8);  // what fill() touches beyond a row's end
@@ -73,6 +74,37 @@ void DepthBounds::fill(double top, double bottom, int widest, float depth, const
       std::memcpy(row + k, &now, sizeof now);
     }
   }
+}
+
+void DepthBounds::noteTiles() {
+  if (!layered_) return;
+  static_assert(side == 4);
+  const std::size_t across = stride_ / side, down = (depth_.size() / stride_) / side;
+  std::vector<float> deepest(stride_), tiles(across * down);
+  for (std::size_t y = 0; y < down; ++y) {
+    std::copy_n(row(y * side), stride_, deepest.data());
+    for (std::size_t k = 1; k < side; ++k) {
+      const float* other = row(y * side + k);
+      for (std::size_t x = 0; x < stride_; ++x) deepest[x] = deepest[x] < other[x] ? other[x] : deepest[x];
+    }
+    for (std::size_t x = 0; x < across; ++x) {
+      const float* of = deepest.data() + x * side;
+      tiles[y * across + x] = std::max(std::max(of[0], of[1]), std::max(of[2], of[3]));
+    }
+  }
+  // Of each tile and its neighbours to the right and below, at a distance of `step`; there are none beyond the last.
+  const auto widened = [&](const std::vector<float>& of, std::size_t step) {
+    std::vector<float> to(of.size());
+    for (std::size_t y = 0; y < down; ++y)
+      for (std::size_t x = 0; x < across; ++x) {
+        const std::size_t right = std::min(x + step, across - 1), below = std::min(y + step, down - 1);
+        to[y * across + x] = std::max(std::max(of[y * across + x], of[y * across + right]),
+                                      std::max(of[below * across + x], of[below * across + right]));
+      }
+    return to;
+  };
+  deepest2_ = widened(tiles, 1);
+  deepest4_ = widened(deepest2_, 2);
 }
 
 bool DepthBounds::hides(const Footprint& f) const {

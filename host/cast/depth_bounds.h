@@ -18,6 +18,8 @@ namespace solidcast {
 
 class DepthBounds {
  public:
+  static constexpr int side = 4;
+
   /// Pixels of the region, and padding up to stride x rows, which bounds nothing. `layered`: many solids lie one behind
   /// the other.
   void start(const Silhouette& silhouette, const Crop& region, int stride, int rows, RealType type, bool layered);
@@ -35,6 +37,16 @@ class DepthBounds {
     const int width = f.x1 - f.x0 + 1, height = f.y1 - f.y0 + 1;
     if (polygon && !layered_ && (width < 8 || height < 8)) return false;
     return *middle(f) > f.hides && (double(width) * height < 4096 || work_ < most_);
+  }
+  /// Takes down the deepest pixel of every 2x2 and 4x4 tiles, as things are now, for behindTiles(). Done now and then it
+  /// costs little, and most solids are found to be hidden without a look at their pixels.
+  void noteTiles();
+  bool behindTiles(const Footprint& f) const {
+    if (deepest2_.empty()) return false;
+    const int x = f.x0 / side, y = f.y0 / side, across = f.x1 / side - x, down = f.y1 / side - y;
+    const std::vector<float>& deepest = (across < 2) & (down < 2) ? deepest2_ : deepest4_;
+    return (across < 4) & (down < 4) &
+           (f.nearest > deepest[static_cast<std::size_t>(y) * (stride_ / side) + static_cast<std::size_t>(x)]);
   }
   /// Whether nothing of a small solid can be seen where `f` says: each of its pixels is known to be hit before. Of a larger
   /// one, tile by tile, that is sooner seen from the tiles' limits.
@@ -68,7 +80,7 @@ class DepthBounds {
   double rounding_ = 0;         // of a flat solid's s, relative to s over the sine of the angle it is seen at
   double work_ = 0, most_ = 0;  // pixels
   bool layered_ = false;
-  std::vector<float> depth_;
+  std::vector<float> depth_, deepest2_, deepest4_;
 };
 
 }  // namespace solidcast

@@ -93,15 +93,23 @@ void ListBuilder::Part::look(const World& world, std::size_t from, std::size_t t
                              const EyeFrames& eye, const ListGrid& grid, bool hiding) {
   Footprints footprints(silhouette, grid.region, eye.plain);
   const std::span<const SolidEntry> solids(world.solids);
+  // After as many solids as there are tiles, then after twice as many, and so on.
+  std::size_t nextNote = from + static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.down);
   for (std::size_t first = from; first < to; first += Footprints::block) {
     const std::size_t count = std::min(Footprints::block, to - first);
     footprints.find(solids.subspan(first, count));
-    if (hiding)
-      for (std::size_t i = 0; i < count; ++i)
-        if (footprints[i].seen()) __builtin_prefetch(depths.middle(footprints[i]), 1);
+    std::array<bool, Footprints::block> seen;
+    if (hiding && first >= nextNote) {
+      depths.noteTiles();
+      nextNote = from + 2 * (first - from);
+    }
     for (std::size_t i = 0; i < count; ++i) {
+      seen[i] = footprints[i].seen() && !(hiding && depths.behindTiles(footprints[i]));
+      if (hiding && seen[i]) __builtin_prefetch(depths.middle(footprints[i]), 1);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!seen[i]) continue;
       const Footprint& f = footprints[i];
-      if (!f.seen()) continue;
       const ListLevel level = levelOf(f);
       if (hiding) {
         if (level == narrow && depths.hides(f)) continue;
