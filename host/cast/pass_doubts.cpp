@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "host/cast/pass.h"
+#include "host/cast/pixel_candidates.h"
 
 namespace solidcast {
 namespace {
@@ -53,13 +55,18 @@ void Pass::secondPass(Band& band) {
   for (const auto& list : doubtful_) pixels.insert(pixels.end(), list.begin(), list.end());
   std::sort(pixels.begin(), pixels.end());
   pixels.erase(std::unique(pixels.begin(), pixels.end()), pixels.end());
+  // Few rays among many solids: an index would not repay.
+  std::optional<PixelCandidates> among;
+  if (scene_->world.solids.size() > 512 && pixels.size() <= 2048)
+    among.emplace(*scene_, Silhouette(*scene_, job_.width, job_.height, samples_),
+                  Crop{crop_.x, crop_.y + band.firstRow, band.width, band.rows}, pixels);
   inParallel(pixels.size(), [&](std::size_t i) {
     const std::size_t pixel = pixels[i];
     Light sum;
     ExactHit hit;
     for (std::size_t sample = 0; sample < doubtful_.size(); ++sample) {
       RayQ ray = rayOf(rays, band, pixel, sample);
-      hit = second_->cast(ray);
+      hit = among ? second_->castAmong(ray, among->of(i)) : second_->cast(ray);
       V3 normal = hit ? second_->surface(ray, hit).normal : V3{};
       Light light = integrate(*scene_, job_.twoSided, ray, hit, normal);
       for (int c = 0; c < 3; ++c) sum.rgb[c] += light.rgb[c];

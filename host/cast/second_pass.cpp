@@ -54,8 +54,19 @@ std::vector<SecondPass::Candidate> SecondPass::candidates(const RayQ& ray, f128 
 }
 
 ExactHit SecondPass::cast(const RayQ& ray, std::optional<f128> tMax) const {
+  return nearest(ray, candidates(ray, tMax.value_or(HUGE_VALQ)), tMax);
+}
+
+ExactHit SecondPass::castAmong(const RayQ& ray, std::span<const std::uint32_t> solids) const {
+  std::vector<Candidate> all;
+  for (const std::uint32_t solid : solids)
+    if (const Cut c = cutOf(world_.solids[solid].shape, ray); c.hit) all.push_back({solid, c});
+  return nearest(ray, all, std::nullopt);
+}
+
+ExactHit SecondPass::nearest(const RayQ& ray, std::span<const Candidate> candidates, std::optional<f128> tMax) const {
   ExactHit best;
-  for (const auto& [solid, c] : candidates(ray, tMax.value_or(HUGE_VALQ))) {
+  for (const auto& [solid, c] : candidates) {
     const Shape& shape = world_.solids[solid].shape;
     // Near the limit or the best so far, a free ray has rationals to tell; else they count as equal.
     if (tMax) {
@@ -83,8 +94,7 @@ Surface SecondPass::surface(const RayQ& ray, const ExactHit& hit) const {
                     world_.solids[static_cast<std::size_t>(hit.index)].shape);
 }
 
-void inParallel(std::size_t n, const std::function<void(std::size_t)>& f) {
-  constexpr std::size_t share = 64;
+void inParallel(std::size_t n, const std::function<void(std::size_t)>& f, std::size_t share) {
   std::size_t threads = std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), n / share + 1);
   std::atomic<std::size_t> next{0};
   auto work = [&] {

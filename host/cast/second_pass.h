@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "host/cast/solids/forms.h"
@@ -34,6 +35,9 @@ class SecondPass {
   /// earlier solid.
   ExactHit cast(const RayQ& ray, std::optional<f128> tMax = std::nullopt) const;
 
+  /// The same among these solids alone, by index, which hold all that the ray can meet.
+  ExactHit castAmong(const RayQ& ray, std::span<const std::uint32_t> solids) const;
+
   /// t of a ray known to hit solid `index`; an empty hit if binary128 disagrees.
   ExactHit castAt(const RayQ& ray, std::int32_t index) const;
 
@@ -46,6 +50,7 @@ class SecondPass {
   };
   /// Every solid that the ray hits within `limit` (in its own lengths) and that may be nearest, by index.
   std::vector<Candidate> candidates(const RayQ& ray, f128 limit) const;
+  ExactHit nearest(const RayQ& ray, std::span<const Candidate> candidates, std::optional<f128> tMax) const;
 
   const World& world_;
   const Index* index_;
@@ -54,7 +59,7 @@ class SecondPass {
   mutable std::atomic<int> cast_ = 0;
 };
 
-/// Runs f(i) for 0 <= i < n on all cores; small n on this thread alone.
-void inParallel(std::size_t n, const std::function<void(std::size_t)>& f);
+/// Runs f(i) for 0 <= i < n on all cores, each taking `share` at a time; small n on this thread alone.
+void inParallel(std::size_t n, const std::function<void(std::size_t)>& f, std::size_t share = 64);
 
 }  // namespace solidcast

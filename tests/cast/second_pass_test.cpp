@@ -1,6 +1,10 @@
 // The guarantee's fallback is seen to run: worlds that force doubt, and the answers after it.
+#include "host/cast/second_pass.h"
+
 #include <cmath>
 
+#include "host/cast/pixel_candidates.h"
+#include "host/scene/random.h"
 #include "tests/cast/fixture.h"
 
 namespace solidcast {
@@ -26,6 +30,36 @@ TEST_F(OnDevice, AnEdgeThroughPixelCentres) {
     EXPECT_GE(tally.doubtful, 50u);
     if (arithmetic == Arithmetic::fp64) { EXPECT_LE(tally.doubtful, 150u) << "only the column"; }
   }
+}
+
+// The second pass of a few rays tries only what their pixels can see: nothing that a ray meets may be missing there.
+TEST(PixelCandidates, HoldAllThatTheirRaysMeet) {
+  for (const Camera& camera : {Camera{PerspectiveCamera{{0, 0, 30}, {0, 0, -1}, {0, 1, 0}, 45, 57}},
+                               Camera{PerspectiveCamera{{0.3, -0.2, 0.1}, {1, 0.2, -1}, {0, 1, 0}, 70, 90}},
+                               Camera{OrthographicCamera{{1, 2, 30}, {0.02, -0.05, -1}, {0, 1, 0}, 24, 18}},
+                               Camera{EnvironmentCamera{{0.3, -0.2, 0.1}, {1, 0.2, -1}, {0, 1, 0}, 180, 360}}})
+    for (const int samples : {1, 2}) {
+      Scene scene = randomScene("mixed", 9000, 3);
+      scene.camera = camera;
+      const Crop region{20, 10, 97, 61};
+      std::vector<std::uint32_t> pixels;
+      for (std::uint32_t i = 0; i < 97 * 61; i += 11) pixels.push_back(i);
+      const PixelCandidates among(scene, Silhouette(scene, 160, 120, samples), region, pixels);
+      const SecondPass second(scene.world);
+      const PixelRays rays(scene, 160, 120, samples);
+      std::size_t hits = 0, tried = 0;
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const std::int64_t x = region.x + pixels[i] % 97, y = region.y + pixels[i] / 97;
+        const RayQ ray = rays.ray(x * samples, y * samples);
+        const ExactHit all = second.cast(ray), few = second.castAmong(ray, among.of(i));
+        EXPECT_EQ(few.index, all.index) << "pixel " << x << "," << y;
+        EXPECT_TRUE(few.t == all.t);
+        hits += all.index > 0;  // not the plane
+        tried += among.of(i).size();
+      }
+      EXPECT_GT(hits, pixels.size() / 10);
+      EXPECT_LT(tried, pixels.size() * 3000) << "much less than all";
+    }
 }
 
 // All hits are ties: more doubt than the list has room for, so the band runs once more.
