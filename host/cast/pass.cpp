@@ -26,7 +26,8 @@ bool isGrey(const Scene& scene) {
 #include "shaders/integrators.def"
 #undef INTEGRATOR
   };
-  return channels[scene.integrator.index()] == 1;
+  const std::size_t number = scene.integrator.index();  // users' own GLSL comes after those of the list
+  return number < std::size(channels) && channels[number] == 1;
 }
 
 std::uint8_t toLevel(float v) { return static_cast<std::uint8_t>((v < 0 ? 0.f : v > 1 ? 1.f : v) * 255.f); }
