@@ -27,7 +27,7 @@ class DepthBounds {
   float* row(std::size_t y) { return depth_.data() + y * stride_; }
   const float* row(std::size_t y) const { return depth_.data() + y * stride_; }
 
-  /// Where hidden() will look.
+  /// The depth in the middle of where a solid is seen; to be fetched ahead.
   const float* middle(const Footprint& f) const {
     return row(static_cast<std::size_t>((f.y0 + f.y1) / 2)) + (f.x0 + f.x1) / 2;
   }

@@ -34,7 +34,9 @@ Crowd crowd(const World& world, const Silhouette& silhouette, const Crop& region
   double pixels = 0;
   for (std::size_t i = 0; i < some.size(); ++i) {
     const Footprint& f = footprints[i];
-    if (f.seen()) pixels += double(f.x1 - f.x0 + 1) * (f.y1 - f.y0 + 1);
+    // A plane is one layer and not, as a sample would have it, a share of the scene.
+    if (f.seen() && !std::holds_alternative<InfinitePlane>(some[i].shape))
+      pixels += double(f.x1 - f.x0 + 1) * (f.y1 - f.y0 + 1);
   }
   found.layers = pixels / some.size() * world.solids.size() / region.width / region.height;
   return found;

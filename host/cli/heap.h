@@ -1,5 +1,5 @@
 // The heap in large pages. A run of the program is short: of a quarter of a second a third went into the heap's first
-// touch of each page, most of it by the driver's compiler (docs/performance-notes.md: Whole process).
+// touch of each page, most of it by the driver's compiler (docs/benchmarks.md: Whole process).
 #pragma once
 
 namespace solidcast::cli {

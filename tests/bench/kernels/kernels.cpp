@@ -58,26 +58,18 @@ void lists(benchmark::State& state, const char* kind, RealType type) {
   }
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
-BENCHMARK_CAPTURE(lists, sphere fast, "sphere", RealType::f32)
-    ->Arg(100000)
-    ->Arg(1000000)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(lists, sphere exact, "sphere", RealType::f64)
-    ->Arg(100000)
-    ->Arg(1000000)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(lists, triangle fast, "triangle", RealType::f32)
-    ->Arg(100000)
-    ->Arg(1000000)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(lists, triangle exact, "triangle", RealType::f64)
-    ->Arg(100000)
-    ->Arg(1000000)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
+const bool listsRegistered = [] {
+  for (const char* kind : {"sphere", "triangle"})
+    for (const RealType type : {RealType::f32, RealType::f64}) {
+      const std::string name = "lists/" + std::string(kind) + (type == RealType::f32 ? " fast" : " exact");
+      benchmark::RegisterBenchmark(name.c_str(), lists, kind, type)
+          ->Arg(100000)
+          ->Arg(1000000)
+          ->Unit(benchmark::kMillisecond)
+          ->UseRealTime();
+    }
+  return true;
+}();
 
 /// A picture with soft shades, as casting makes them, to a file.
 void png(benchmark::State& state) {
