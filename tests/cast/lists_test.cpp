@@ -2,6 +2,7 @@
 // held against the plan that tries all solids on all pixels.
 #include <cmath>
 
+#include "host/cast/plan.h"
 #include "host/error.h"
 #include "host/scene/build.h"
 #include "host/scene/random.h"
@@ -172,6 +173,27 @@ TEST_F(Lists, LongerThanTheDriverWalks) {
         EXPECT_EQ(band.solid[i], static_cast<std::int32_t>(count - 1))
             << count << " " << nameOf(method) << " pixel " << i;
     }
+}
+
+/// Colours of 8 bits alone are stored by the shader, a byte a pixel where the integrator is grey; beside radiance they are
+/// made of it on the host.
+TEST_F(Lists, EightBitsAloneAreTheLevelsOfTheRadianceInEveryPlan) {
+  Scene scene = loaded("a_solids.json");
+  RenderJob job = small();
+  const RayCastingDistIntegrator dist{{1, 0.2, 0}, 4, {0.2, 1, 0}, 12};
+  for (const Integrator& integrator : {Integrator{RayCastingIntegrator{}}, Integrator{dist}}) {
+    scene.integrator = integrator;
+    for (const Method method : {Method::naive, Method::fast, Method::exact})
+      for (const Plan plan : {Plan::baked, Plan::uniform, Plan::storage, Plan::tiles, Plan::lists}) {
+        if (method == Method::naive && plan == Plan::lists) continue;  // refused, see below
+        job.channels = {.rgb8 = true};
+        const Band alone = picture(scene, job, {.method = method, .plan = plan});
+        job.channels = {.rgb8 = true, .radiance = true};
+        const Band beside = picture(scene, job, {.method = method, .plan = plan});
+        ASSERT_EQ(alone.rgb8.size(), 3u * 151 * 101);
+        EXPECT_TRUE(alone.rgb8 == beside.rgb8) << nameOf(method) << " " << planName(plan) << " " << integrator.index();
+      }
+  }
 }
 
 /// Rays without a common origin: the lists hold the solids themselves.
