@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/cast/wide.h"
+
 namespace solidcast {
 namespace {
 
-// Compiled for several instruction sets, the processor chooses. None of them fuses products and sums (-ffp-contract), so
-// that all give the same numbers. The sanitizers are not ready yet when such a choice is made.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define WIDE __attribute__((target_clones("default", "avx2", "avx512f")))
-#else
-#define WIDE
-#endif
-
 using View = Footprints::View;
-using Result = Footprints::Result;
 constexpr std::size_t block = Footprints::block;
 
 struct Slopes {
@@ -30,20 +23,26 @@ inline void pixels(double from, double to, double last, std::int32_t& first, std
   first = i + (i < from), final = k - (k > to);
 }
 
-inline void store(const View& v, const Slopes& s, bool plain, double nearest, double hides, std::size_t i, Result& r) {
+/// `hides`: the depth beyond which the solid hides what is behind, where `covers`.
+inline void store(const View& v, const Slopes& s, bool plain, double nearest, double hides, bool covers, std::size_t i,
+                  auto& r) {
   const double x0 = s.x0 * v.perX, x1 = s.x1 * v.perX, y0 = s.y0 * v.perY, y1 = s.y1 * v.perY;
   pixels(x0 + v.lowX - 2e-9 * std::abs(x0), x1 + v.highX + 2e-9 * std::abs(x1), v.lastX, r.x0[i], r.x1[i]);
   pixels(y0 + v.lowY - 2e-9 * std::abs(y0), y1 + v.highY + 2e-9 * std::abs(y1), v.lastY, r.y0[i], r.y1[i]);
-  r.nearest[i] = static_cast<float>(nearest * (1 - 1e-6));
-  r.hides[i] = static_cast<float>(hides);
+  r.nearest[i] = v.scale.down(static_cast<float>(nearest * (1 - 1e-6)));
+  const std::int32_t beyond = v.scale.up(static_cast<float>(hides * (1 + 1e-6)));
+  r.hides[i] = covers ? beyond : DepthScale::none;
   r.plain[i] = plain;
 }
 
 /// Centres from the world's origin, and radii. True: some sphere is farther than 16 radii.
-WIDE bool ofSpheres(const View& v, const double (&c)[4][block], std::size_t n, Result& r) {
+/// A disc through the centre, parallel to the image, is a circle there: what it covers, less what rounding takes.
+WIDE bool ofSpheres(const View& view, Footprints::Spheres& b) {
+  const View v = view;  // nothing that is stored can change it
   std::int32_t far = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = c[0][i] - v.origin[0], y = c[1][i] - v.origin[1], z = c[2][i] - v.origin[2], radius = c[3][i];
+  for (std::size_t i = 0, count = b.count; i < count; ++i) {
+    const double x = b.v[0][i] - v.origin[0], y = b.v[1][i] - v.origin[1], z = b.v[2][i] - v.origin[2];
+    const double radius = b.v[3][i];
     const double fx = x * v.inverseUnit, fy = y * v.inverseUnit, fz = z * v.inverseUnit, fr = radius * v.inverseUnit;
     far |= fx * fx + fy * fy + fz * fz > 256 * fr * fr;  // isFar()
     const double X = v.axes[0][0] * x + v.axes[0][1] * y + v.axes[0][2] * z;
@@ -52,20 +51,33 @@ WIDE bool ofSpheres(const View& v, const double (&c)[4][block], std::size_t n, R
     const double big = radius * (1 + 1e-9) + 1e-12 * (std::abs(X) + std::abs(Y) + std::abs(Z));
     const double q = Z * Z - big * big, inverse = 1 / q;
     const double hx = big * std::sqrt(X * X + q), hy = big * std::sqrt(Y * Y + q);
+
+    // Of the squared radius, what the shader's rounding cannot take: lost |f| min(|f|, 16 r), from 16 radii on by the form
+    // for far spheres; |f| <= (|f|^2 / Z + Z) / 2.
+    const double slope = 1 / Z, all = radius * radius, square = X * X + Y * Y + Z * Z;
+    const double reach = 8 * radius * (square * slope + Z);
+    const double held = all - v.lost * (square < reach ? square : reach);
+    const double circle = std::sqrt(held > 0 ? held : 0) * slope;
+    const double wide = circle * v.perX - v.margin, high = circle * v.perY - v.margin;
+    b.cover[0][i] = X * slope * v.perX + v.middleX, b.cover[1][i] = Y * slope * v.perY + v.middleY;
+    b.cover[2][i] = wide, b.cover[3][i] = high;
+    const bool covers = (Z > 0) & (square > all * 1.001) & (wide > 0) & (high > 0);
     store(v, {(X * Z - hx) * inverse, (X * Z + hx) * inverse, (Y * Z - hy) * inverse, (Y * Z + hy) * inverse},
-          Z > 1.01 * big, Z - big, Z, i, r);
+          Z > 1.01 * big, Z - big, Z, covers, i, b);
   }
   return far;
 }
 
-/// Corners from the eye.
-template <std::size_t CORNERS>
-inline __attribute__((always_inline)) void corners(const View& v, const double (&p)[3 * CORNERS][block], std::size_t n,
-                                                   Result& r) {
-  for (std::size_t i = 0; i < n; ++i) {
+/// Corners from the eye. With COVERS the first three tell the plane: what hides by it is nowhere beyond the farthest corner,
+/// unless it is seen so flat that the shader's rounding can move it.
+template <std::size_t CORNERS, bool COVERS>
+inline __attribute__((always_inline)) void corners(const View& view, auto& b) {
+  const View v = view;
+  for (std::size_t i = 0, count = b.count; i < count; ++i) {
+    const auto& p = b.v;
     Slopes s{1e300, -1e300, 1e300, -1e300};
     double nearest = 1e300, farthest = 0;
-    bool front = true;
+    bool front = true, covers = false;
     for (std::size_t k = 0; k < CORNERS; ++k) {
       const double x = p[3 * k][i], y = p[3 * k + 1][i], z = p[3 * k + 2][i];
       const double X = v.axes[0][0] * x + v.axes[0][1] * y + v.axes[0][2] * z;
@@ -76,17 +88,32 @@ inline __attribute__((always_inline)) void corners(const View& v, const double (
       s.x0 = across < s.x0 ? across : s.x0, s.x1 = across > s.x1 ? across : s.x1;
       s.y0 = down < s.y0 ? down : s.y0, s.y1 = down > s.y1 ? down : s.y1;
       nearest = Z < nearest ? Z : nearest, farthest = Z > farthest ? Z : farthest;
+      if constexpr (COVERS) {
+        const std::size_t to = CORNERS == 4 ? k ^ k >> 1 : k;  // around, not by rows
+        b.cover[2 * to][i] = across * v.perX + v.middleX, b.cover[2 * to + 1][i] = down * v.perY + v.middleY;
+      }
     }
-    store(v, s, front, nearest, farthest, i, r);
+    if constexpr (COVERS) {
+      const double ax = p[3][i] - p[0][i], ay = p[4][i] - p[1][i], az = p[5][i] - p[2][i];
+      const double bx = p[6][i] - p[0][i], by = p[7][i] - p[1][i], bz = p[8][i] - p[2][i];
+      const double nx = ay * bz - az * by, ny = az * bx - ax * bz, nz = ax * by - ay * bx;
+      const double plane = nx * p[0][i] + ny * p[1][i] + nz * p[2][i], least = v.flat * farthest;
+      covers = (nx * nx + ny * ny + nz * nz) * (least * least) < plane * plane;
+      // Most triangles of a fine mesh hold no centre.
+      const double edges = 2 * v.margin;
+      covers = covers & ((s.x1 - s.x0) * v.perX > edges) & ((s.y1 - s.y0) * v.perY > edges);
+    }
+    store(v, s, front, nearest, farthest * (1 + 0x1p-12), covers, i, b);
   }
 }
-WIDE void ofTriangles(const View& v, const double (&p)[9][block], std::size_t n, Result& r) { corners<3>(v, p, n, r); }
-WIDE void ofQuads(const View& v, const double (&p)[12][block], std::size_t n, Result& r) { corners<4>(v, p, n, r); }
-WIDE void ofBoxes(const View& v, const double (&p)[24][block], std::size_t n, Result& r) { corners<8>(v, p, n, r); }
+WIDE void ofTriangles(const View& v, Footprints::Triangles& b) { corners<3, true>(v, b); }
+WIDE void ofQuads(const View& v, Footprints::Quads& b) { corners<4, true>(v, b); }
+WIDE void ofBoxes(const View& v, Footprints::Boxes& b) { corners<8, false>(v, b); }
 
 }  // namespace
 
-Footprints::Footprints(const Silhouette& silhouette, const Crop& region, const Frame<double>& eye)
+Footprints::Footprints(const Silhouette& silhouette, const Crop& region, const Frame<double>& eye, RealType type,
+                       DepthScale scale)
     : silhouette_(silhouette), region_(region), vectors_(silhouette.slopesAreEnough()) {
   const auto [perX, perY, middleX, middleY, slack] = silhouette.pixelsOfSlopes();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -94,36 +121,44 @@ Footprints::Footprints(const Silhouette& silhouette, const Crop& region, const F
     for (std::size_t i = 0; i < 3; ++i) view_.axes[k][i] = silhouette.axes()[k][i];
   }
   view_.perX = perX, view_.perY = perY;
+  view_.middleX = middleX - region.x, view_.middleY = middleY - region.y;
   view_.lowX = middleX - slack - 0.5 - region.x, view_.highX = middleX + slack - 0.5 - region.x;
   view_.lowY = middleY - slack - 0.5 - region.y, view_.highY = middleY + slack - 0.5 - region.y;
   view_.lastX = region.width - 1, view_.lastY = region.height - 1;
   view_.inverseUnit = 1 / eye.unit;
+  // The longest of the directions (x, y, 1) counts.
+  const double x = middleX / perX, y = middleY / perY, steep = 1 + x * x + y * y;
+  view_.margin = 1e-3 + (type == RealType::f32 ? 4e-6 : 1e-12) * steep * std::max(perX, perY);
+  view_.lost = type == RealType::f32 ? 0x1p-17 : 0x1p-40;
+  view_.flat = 8 * unitRoundoff(type) * std::sqrt(steep) * 0x1p12;  // an error of 2^-12
+  view_.scale = scale;
 }
 
 template <class Corners>
-void Footprints::add(const Corners& corners, Batch<3 * std::tuple_size_v<Corners>>& batch, std::size_t at) {
+void Footprints::add(const Corners& corners, auto& batch, std::size_t at) {
   for (std::size_t k = 0; k < corners.size(); ++k)
     for (std::size_t i = 0; i < 3; ++i) batch.v[3 * k + i][batch.count] = corners[k][i];
   batch.at[batch.count++] = static_cast<std::uint8_t>(at);
 }
 
-template <std::size_t NUMBERS>
-void Footprints::spread(Batch<NUMBERS>& batch, std::span<const SolidEntry> solids) {
+void Footprints::spread(auto& batch, std::span<const Shape* const> solids, std::uint8_t corners) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     const std::size_t at = batch.at[i];
-    found_[at] = result_.plain[i] ? Footprint{result_.x0[i], result_.y0[i],      result_.x1[i],
-                                              result_.y1[i], result_.nearest[i], result_.hides[i]}
-                                  : ask(solids[at].shape);
+    corners_[at] = corners, slot_[at] = static_cast<std::uint8_t>(i);
+    found_[at] = batch.plain[i] ? Footprint{batch.x0[i],
+                                            batch.y0[i],
+                                            batch.x1[i],
+                                            batch.y1[i],
+                                            static_cast<DepthCode>(batch.nearest[i]),
+                                            static_cast<DepthCode>(batch.hides[i])}
+                                : ask(*solids[at]);
   }
   batch.count = 0;
 }
 
-void Footprints::find(std::span<const SolidEntry> solids) {
+void Footprints::find(std::span<const Shape* const> solids) {
   for (std::size_t i = 0; i < solids.size(); ++i) {
-    // The next block's, in time.
-    const auto* next = reinterpret_cast<const char*>(solids.data() + block + i);
-    __builtin_prefetch(next), __builtin_prefetch(next + 64);
-    const Shape& shape = solids[i].shape;
+    const Shape& shape = *solids[i];
     if (const auto* sphere = std::get_if<Sphere>(&shape)) {
       for (std::size_t k = 0; k < 3; ++k) spheres_.v[k][spheres_.count] = sphere->center[k];
       spheres_.v[3][spheres_.count] = sphere->radius;
@@ -141,25 +176,36 @@ void Footprints::find(std::span<const SolidEntry> solids) {
     }
   }
   if (spheres_.count) {
-    farSphere_ |= ofSpheres(view_, spheres_.v, spheres_.count, result_);
-    if (!vectors_) std::fill_n(result_.plain, spheres_.count, 0);
-    spread(spheres_, solids);
+    farSphere_ |= ofSpheres(view_, spheres_);
+    if (!vectors_) std::fill_n(spheres_.plain, spheres_.count, 0);
+    spread(spheres_, solids, 0);
   }
-  if (triangles_.count) ofTriangles(view_, triangles_.v, triangles_.count, result_), spread(triangles_, solids);
-  if (quads_.count) ofQuads(view_, quads_.v, quads_.count, result_), spread(quads_, solids);
-  if (boxes_.count) ofBoxes(view_, boxes_.v, boxes_.count, result_), spread(boxes_, solids);
+  if (triangles_.count) ofTriangles(view_, triangles_), spread(triangles_, solids, 3);
+  if (quads_.count) ofQuads(view_, quads_), spread(quads_, solids, 4);
+  if (boxes_.count) ofBoxes(view_, boxes_), spread(boxes_, solids, 0);
+}
+
+Cover Footprints::cover(std::size_t i) const {
+  Cover cover{corners_[i], view_.margin, {}};
+  const auto take = [&](const auto& batch) {
+    for (std::size_t k = 0; k < std::size(batch.cover); ++k) cover.v[k] = batch.cover[k][slot_[i]];
+  };
+  if (cover.corners == 0) take(spheres_);
+  else if (cover.corners == 3) take(triangles_);
+  else take(quads_);
+  return cover;
 }
 
 /// Pixel i is seen at i + 0.5, so that [a, b] holds centres from ceil(a - 0.5) to floor(b - 0.5).
 Footprint Footprints::ask(const Shape& shape) const {
   const Rectangle r = std::visit([&](const auto& solid) { return silhouette_.rectangle(solid); }, shape);
-  const auto nearest = static_cast<float>(r.nearest * (1 - 1e-6));
-  Footprint f{0, 0, region_.width - 1, region_.height - 1, nearest, nearest};
+  const std::int32_t nearest = view_.scale.down(static_cast<float>(r.nearest * (1 - 1e-6)));
+  Footprint f{0, 0, region_.width - 1, region_.height - 1, static_cast<DepthCode>(nearest), DepthScale::none};
   if (r.everywhere) return f;
   // With NaN, max and min in this order are as far as possible.
   const auto from = [](double v) { return std::max(0.0, v); };
   const auto to = [](double last, double v) { return std::min(last, v); };
-  if (r.x.from > r.x.to || r.y.from > r.y.to) return {0, 0, -1, -1, 0, 0};
+  if (r.x.from > r.x.to || r.y.from > r.y.to) return {0, 0, -1, -1, 0, DepthScale::none};
   pixels(from(r.x.from - 0.5 - region_.x), to(view_.lastX, r.x.to - 0.5 - region_.x), view_.lastX, f.x0, f.x1);
   pixels(from(r.y.from - 0.5 - region_.y), to(view_.lastY, r.y.to - 0.5 - region_.y), view_.lastY, f.y0, f.y1);
   return f;

@@ -1,5 +1,6 @@
 // Where solids are seen, a block of them at a time: the same conservative rectangles as silhouette.h, by arithmetic that
-// the compiler turns into vectors. It was the largest part of a picture of many solids.
+// the compiler turns into vectors. It was the largest part of a picture of many solids. And what they certainly cover, for
+// depth_bounds.h.
 //
 // Spheres, the centre c from the eye in camera axes, are seen between the slopes of the tangents of their shadows,
 //   x/depth = (c.x c.depth -+ r sqrt(c.x^2 + c.depth^2 - r^2)) / (c.depth^2 - r^2), and the same in y: one division in all;
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <span>
 
+#include "host/cast/depth_code.h"
 #include "host/cast/silhouette.h"
 
 namespace solidcast {
@@ -17,20 +19,32 @@ namespace solidcast {
 /// Pixels of a region whose centres a solid can cover, first and last, counted from the region's corner.
 struct Footprint {
   std::int32_t x0, y0, x1, y1;
-  float nearest;  // Rectangle::nearest, rounded down
-  float hides;    // about the depth beyond which it can hide others: a sphere's middle, a polygon's farthest corner
+  DepthCode nearest;  // Rectangle::nearest, not rounded up
+  DepthCode hides;    // beyond it, what the solid covers is hidden; DepthScale::none: hides nothing
   bool seen() const { return x0 <= x1 && y0 <= y1; }
+};
+
+/// Where a solid is certainly hit, in pixels of the region: an ellipse (corners 0: x, y, half its width, half its height) or
+/// a polygon (x, y by corner, around) that is smaller by `margin`.
+struct Cover {
+  int corners;
+  double margin;
+  double v[8];
 };
 
 class Footprints {
  public:
   static constexpr std::size_t block = 64;
 
-  Footprints(const Silhouette& silhouette, const Crop& region, const Frame<double>& eye);
+  /// `type`: of the records, whose rounding what is covered must stand. `scale`: of the depths.
+  Footprints(const Silhouette& silhouette, const Crop& region, const Frame<double>& eye, RealType type,
+             DepthScale scale = DepthScale());
 
-  /// Of at most `block` solids; [i] then tells of the i-th.
-  void find(std::span<const SolidEntry> solids);
+  /// Of at most `block` solids; [i] and cover(i) then tell of the i-th.
+  void find(std::span<const Shape* const> solids);
   const Footprint& operator[](std::size_t i) const { return found_[i]; }
+  /// Of a solid that hides something.
+  Cover cover(std::size_t i) const;
   /// Some sphere of all so far, seen or not, needs sphere.glsl's FAR_SPHERES.
   bool farSphere() const { return farSphere_; }
 
@@ -38,27 +52,34 @@ class Footprints {
   struct View {
     double origin[3], axes[3][3];
     double perX, perY, lowX, lowY, highX, highY;  // pixel of a slope s: from s per + low, to s per + high
+    double middleX, middleY;                      // at s per + middle
     double lastX, lastY;
     double inverseUnit;  // of length
+    double margin;       // in pixels, within which the shader's rounding may move an edge
+    double lost;         // of a sphere's q, relative to its terms: what the shader's rounding can take
+    double flat;         // a flat solid seen at a smaller sine than this hides nothing
+    DepthScale scale;
   };
-  /// Numbers of the block's solids of one kind, one array a number; `at`: the solid's place in the block.
-  template <std::size_t NUMBERS>
+  /// Numbers of the block's solids of one kind, one array a number, and what is found of them.
+  template <std::size_t NUMBERS, std::size_t COVER>
   struct Batch {
     alignas(64) double v[NUMBERS][block];
-    std::array<std::uint8_t, block> at;
+    std::array<std::uint8_t, block> at;  // the solid's place in the block
     std::size_t count = 0;
+    alignas(64) std::int32_t x0[block], y0[block], x1[block], y1[block], nearest[block], hides[block];
+    alignas(64) std::int32_t plain[block];  // it serves
+    alignas(64) double cover[COVER][block];
   };
-  struct Result {
-    alignas(64) std::int32_t x0[block], y0[block], x1[block], y1[block], plain[block];  // plain: it serves
-    alignas(64) float nearest[block], hides[block];
-  };
+  using Spheres = Batch<4, 4>;
+  using Triangles = Batch<9, 6>;
+  using Quads = Batch<12, 8>;
+  using Boxes = Batch<24, 0>;
 
  private:
   Footprint ask(const Shape& shape) const;
   template <class Corners>
-  static void add(const Corners& corners, Batch<3 * std::tuple_size_v<Corners>>& batch, std::size_t at);
-  template <std::size_t NUMBERS>
-  void spread(Batch<NUMBERS>& batch, std::span<const SolidEntry> solids);
+  static void add(const Corners& corners, auto& batch, std::size_t at);
+  void spread(auto& batch, std::span<const Shape* const> solids, std::uint8_t corners);
 
   const Silhouette& silhouette_;
   Crop region_;
@@ -66,11 +87,11 @@ class Footprints {
   bool vectors_;
   bool farSphere_ = false;
   std::array<Footprint, block> found_;
-  Batch<4> spheres_;
-  Batch<9> triangles_;
-  Batch<12> quads_;
-  Batch<24> boxes_;
-  Result result_;
+  std::array<std::uint8_t, block> corners_, slot_;  // of cover(); place in the batch
+  Spheres spheres_;
+  Triangles triangles_;
+  Quads quads_;
+  Boxes boxes_;
 };
 
 }  // namespace solidcast

@@ -10,38 +10,6 @@
 namespace solidcast {
 namespace {
 
-/// Of a few solids from all over the scene: what they are, and how many layers of rectangles the scene has.
-struct Crowd {
-  bool spheres = false, polygons = false;
-  double layers = 0;
-
-  bool layered() const { return layers > 8; }
-  /// Looking for what is hidden costs a pass over the pixels and, by polygon, more than it saves where they are few.
-  bool worthLooking() const { return layered() ? spheres || polygons : spheres && layers > 1; }
-};
-Crowd crowd(const World& world, const Silhouette& silhouette, const Crop& region, const Frame<double>& eye) {
-  Footprints footprints(silhouette, region, eye);
-  Crowd found;
-  std::vector<SolidEntry> some;
-  const std::size_t step = world.solids.size() / Footprints::block + 1;
-  for (std::size_t i = 0; i < world.solids.size(); i += step) {
-    some.push_back({"", world.solids[i].shape, 0});
-    const bool sphere = std::holds_alternative<Sphere>(some.back().shape);
-    found.spheres = found.spheres || sphere;
-    found.polygons = found.polygons || (DepthBounds::knows(some.back().shape) && !sphere);
-  }
-  footprints.find(some);
-  double pixels = 0;
-  for (std::size_t i = 0; i < some.size(); ++i) {
-    const Footprint& f = footprints[i];
-    // A plane is one layer and not, as a sample would have it, a share of the scene.
-    if (f.seen() && !std::holds_alternative<InfinitePlane>(some[i].shape))
-      pixels += double(f.x1 - f.x0 + 1) * (f.y1 - f.y0 + 1);
-  }
-  found.layers = pixels / some.size() * world.solids.size() / region.width / region.height;
-  return found;
-}
-
 void onAllThreads(std::size_t threads, const auto& work) {
   std::vector<std::thread> helpers;
   for (std::size_t t = 1; t < threads; ++t) helpers.emplace_back([&work, t] { work(t); });
@@ -61,32 +29,38 @@ void ListBuilder::collect(const Scene& scene, RealType type, bool eyeForms, cons
                           const ListGrid& grid) {
   grid_ = grid, type_ = type, eyeForms_ = eyeForms;
   const EyeFrames eye(eyeFrame(scene, eyeForms ? type : RealType::f64));
-  const std::size_t solids = scene.world.solids.size(), threads = solids < 256 ? 1 : parts_.size();
-  for (auto& part : parts_) part->start();
+  const World& world = scene.world;
+  const std::size_t solids = world.solids.size(), threads = solids < 256 ? 1 : parts_.size();
   const std::size_t pixels = static_cast<std::size_t>(grid.region.width) * static_cast<std::size_t>(grid.region.height);
-  const Crowd crowded = silhouette.centresAlone() && solids > 1000 && solids > pixels / 64
-                            ? crowd(scene.world, silhouette, grid.region, eye.plain)
-                            : Crowd{};
-  hiding_ = crowded.worthLooking();
-  limits_.resize(hiding_ ? static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.down) : 0);
-  wideLimits_.resize(hiding_ ? static_cast<std::size_t>(grid.wideAcross()) * static_cast<std::size_t>(grid.wideDown())
-                             : 0);
+  const bool many = silhouette.centresAlone() && solids > 1000 && solids > pixels / 64 && grid.region.width < (1 << 14);
+  const DepthScale scale(many ? static_cast<float>(eyeFrame(scene, RealType::f32).unit) : 1.f);
+  const auto footprints = [&] { return Footprints(silhouette, grid.region, eye.plain, type, scale); };
+  Crowd crowd;
+  if (many) {
+    auto sample = footprints();
+    crowd = Crowd(world.solids, grid.region, sample);
+  }
+  const bool hiding = crowd.worthLooking();
+  std::vector<DepthBounds*> depths;
+  for (std::size_t t = 0; t < threads; ++t) depths.push_back(&parts_[t]->depths);
+  for (auto& part : parts_) part->start(grid, false);
   std::barrier together(static_cast<std::ptrdiff_t>(threads));
   onAllThreads(threads, [&](std::size_t t) {
     Part& part = *parts_[t];
-    if (hiding_)
-      part.depths.start(silhouette, grid.region, grid.across * ListGrid::tile, grid.down * ListGrid::tile, type,
-                        crowded.layered());
-    part.look(scene.world, solids * t / threads, solids * (t + 1) / threads, silhouette, eye, grid, hiding_);
-    if (hiding_) {
+    auto own = footprints();
+    const auto tell = [&] {
       together.arrive_and_wait();
-      const auto down = static_cast<std::size_t>(grid.down), wideDown = static_cast<std::size_t>(grid.wideDown());
-      for (std::size_t y = down * t / threads; y < down * (t + 1) / threads; ++y) limitTiles(y, threads);
+      DepthBounds::merge(depths, depths[0]->rows() * t / threads, depths[0]->rows() * (t + 1) / threads);
       together.arrive_and_wait();
-      for (std::size_t y = wideDown * t / threads; y < wideDown * (t + 1) / threads; ++y) limitWide(y);
-      together.arrive_and_wait();
+    };
+    part.start(grid, hiding);
+    part.look(world.solids, solids * t / threads, solids * (t + 1) / threads, own, crowd);
+    if (hiding) {
+      tell();
+      part.lookBehind(world.solids, own);
+      tell();
     }
-    part.pack(scene.world, type, eyeForms, eye, grid, limits(), hiding_ ? &parts_[0]->depths : nullptr);
+    part.pack(world, type, eyeForms, eye);
   });
   grazing_ = farSphere_ = boxOnFace_ = false;
   seen_ = 0;
@@ -96,41 +70,6 @@ void ListBuilder::collect(const Scene& scene, RealType type, bool eyeForms, cons
   }
   layOut();
   sortTiles();
-}
-
-std::array<ListLimits, 2> ListBuilder::limits() const {
-  std::array<ListLimits, 2> both;
-  both[narrow] = {hiding_ ? limits_.data() : nullptr, static_cast<std::size_t>(grid_.across), ListGrid::tile};
-  both[wide] = {hiding_ ? wideLimits_.data() : nullptr, static_cast<std::size_t>(grid_.wideAcross()),
-                grid_.wide * ListGrid::tile};
-  return both;
-}
-
-/// What all threads know of each pixel, into the first one's depths, and the deepest of each tile's pixels.
-void ListBuilder::limitTiles(std::size_t tileRow, std::size_t threads) {
-  constexpr std::size_t side = ListGrid::tile;
-  const std::size_t across = static_cast<std::size_t>(grid_.across), pixels = across * side;
-  std::vector<float> deepest(pixels, 0.f);
-  for (std::size_t y = tileRow * side; y < (tileRow + 1) * side; ++y) {
-    float* nearest = parts_[0]->depths.row(y);
-    for (std::size_t t = 1; t < threads; ++t) {
-      const float* other = parts_[t]->depths.row(y);
-      for (std::size_t x = 0; x < pixels; ++x) nearest[x] = other[x] < nearest[x] ? other[x] : nearest[x];
-    }
-    for (std::size_t x = 0; x < pixels; ++x) deepest[x] = deepest[x] < nearest[x] ? nearest[x] : deepest[x];
-  }
-  float* limit = limits_.data() + tileRow * across;
-  for (std::size_t x = 0; x < across; ++x)
-    limit[x] = *std::max_element(deepest.data() + x * side, deepest.data() + (x + 1) * side);
-}
-
-void ListBuilder::limitWide(std::size_t wideRow) {
-  const std::size_t across = static_cast<std::size_t>(grid_.across), down = static_cast<std::size_t>(grid_.down);
-  const std::size_t side = static_cast<std::size_t>(grid_.wide);
-  float* limit = wideLimits_.data() + wideRow * static_cast<std::size_t>(grid_.wideAcross());
-  std::fill_n(limit, grid_.wideAcross(), 0.f);
-  for (std::size_t y = wideRow * side; y < std::min(down, (wideRow + 1) * side); ++y)
-    for (std::size_t x = 0; x < across; ++x) limit[x / side] = std::max(limit[x / side], limits_[y * across + x]);
 }
 
 /// Kind by kind and tile by tile, each tile's entries in the order of the solids.
@@ -219,7 +158,7 @@ void ListBuilder::write(std::span<std::byte> rows, std::span<std::byte> lanes, s
       }
     }
     for (std::size_t part = t; part < parts_.size(); part += threads)
-      parts_[part]->write(rows.data(), rowBytes(type_), eyeForms_, limits());
+      parts_[part]->write(rows.data(), rowBytes(type_), eyeForms_);
   });
 }
 

@@ -33,8 +33,6 @@ struct ListSpan {
   std::uint32_t wideFirst, wideCount, first, count;  // rows; `count` is of both
 };
 
-struct ListLimits;
-
 class ListBuilder {
  public:
   struct Part;  // a thread's share of the solids
@@ -65,9 +63,6 @@ class ListBuilder {
              const std::array<bool, kindCount>& slots);
 
  private:
-  std::array<ListLimits, 2> limits() const;
-  void limitTiles(std::size_t tileRow, std::size_t threads);
-  void limitWide(std::size_t wideRow);
   void layOut();
   void sortTiles();
 
@@ -76,11 +71,10 @@ class ListBuilder {
   bool eyeForms_ = true;
   std::vector<std::unique_ptr<Part>> parts_;
   std::array<bool, kindCount> kinds_{};
-  bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, wideOnes_ = false, hiding_ = false;
+  bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, wideOnes_ = false;
   std::size_t rows_ = 0, seen_ = 0, listed_ = 0;
   // [narrow 0 or wide 1][kind]: by tile, and for the wide ones the count beside
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> first_, count_;
-  std::vector<float> limits_, wideLimits_;    // depth_bounds.h, by tile and by wide tile
   std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles by falling entries
 };
 

@@ -26,8 +26,11 @@ void fetch(const SolidEntry& solid) {
 }
 
 ListLevel levelOf(const Footprint& f) {
-  constexpr int side = ListGrid::tile;
-  return std::int64_t{f.x1 / side - f.x0 / side + 1} * (f.y1 / side - f.y0 / side + 1) > mostTiles ? wide : narrow;
+  const auto tiles = [](std::int32_t first, std::int32_t last) {
+    constexpr std::uint32_t side = ListGrid::tile;
+    return std::uint64_t{static_cast<std::uint32_t>(last) / side - static_cast<std::uint32_t>(first) / side + 1};
+  };
+  return tiles(f.x0, f.x1) * tiles(f.y0, f.y1) > mostTiles ? wide : narrow;
 }
 
 Place placeOf(const Footprint& f, const ListLimits& limits) {
@@ -79,7 +82,32 @@ void writeRows(std::span<const std::byte> from, std::uint32_t rowCount, std::byt
 
 std::uint32_t rowsOf(std::size_t kind, bool eyeForms) { return rowsOfKind[kind][eyeForms]; }
 
-void ListBuilder::Part::start() {
+Crowd::Crowd(std::span<const SolidEntry> solids, const Crop& region, Footprints& footprints) {
+  const std::size_t step = solids.size() / 256 + 1, looked = (solids.size() + step - 1) / step;
+  const double share = 1.0 / looked * solids.size() / region.width / region.height;
+  std::array<const Shape*, Footprints::block> shapes;
+  for (std::size_t i = 0, count = 0; i < solids.size(); i += step) {
+    shapes[count++] = &solids[i].shape;
+    if (count < shapes.size() && i + step < solids.size()) continue;
+    footprints.find(std::span(shapes).first(count));
+    for (std::size_t k = 0; k < count; ++k) {
+      const Footprint& f = footprints[k];
+      if (f.seen() && f.hides != DepthScale::none)
+        some_.push_back({f.hides, (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1) * share});
+    }
+    count = 0;
+  }
+  std::sort(some_.begin(), some_.end());
+  for (auto& [depth, layers] : some_) layers_ += layers, layers = layers_;
+}
+
+DepthCode Crowd::depthOf(double layers) const {
+  const auto beyond = std::partition_point(some_.begin(), some_.end(), [&](const auto& s) { return s.second < layers; });
+  return beyond == some_.end() ? DepthScale::none - 1 : beyond->first;
+}
+
+void ListBuilder::Part::start(const ListGrid& grid, bool hiding) {
+  grid_ = grid, hiding_ = hiding;
   grazing = farSphere = boxOnFace = false;
   seen = 0;
   for (auto& of : heads) of.clear();
@@ -87,71 +115,117 @@ void ListBuilder::Part::start() {
     for (Arena& arena : level) arena.clear();
   for (auto& level : tiles)
     for (auto& counts : level) counts.clear();
+  if (hiding) depths.start(grid.region, grid.across * ListGrid::tile, grid.down * ListGrid::tile, grid.wide);
 }
 
-void ListBuilder::Part::look(const World& world, std::size_t from, std::size_t to, const Silhouette& silhouette,
-                             const EyeFrames& eye, const ListGrid& grid, bool hiding) {
-  Footprints footprints(silhouette, grid.region, eye.plain);
-  const std::span<const SolidEntry> solids(world.solids);
-  // After as many solids as there are tiles, then after twice as many, and so on.
-  std::size_t nextNote = from + static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.down);
+ListLimits ListBuilder::Part::limits(ListLevel level) const {
+  if (level == wide)
+    return {hiding_ ? depths.wideTiles() : nullptr, static_cast<std::size_t>(grid_.wideAcross()),
+            grid_.wide * ListGrid::tile};
+  return {hiding_ ? depths.tiles() : nullptr, static_cast<std::size_t>(grid_.across), ListGrid::tile};
+}
+
+/// At first all are drawn, since nothing is known; the more have been looked at, the fewer layers of all are enough for some
+/// in front of each pixel, and what is behind those is dropped at once.
+void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
+                             Footprints& footprints, const Crowd& crowd) {
+  constexpr double firstLayers = 3;
+  constexpr std::size_t fewest = 6000;  // what a note costs is little beside so many solids
+  const auto frontAt = [&](std::size_t at) { return crowd.depthOf(firstLayers * solids.size() / (at - from)); };
+  std::size_t note = from + fewest;
+  while (hiding_ && note - from < (to - from) / 16) note = from + 2 * (note - from);
+  DepthCode front = hiding_ ? frontAt(note) : 0;
+  std::array<const Shape*, Footprints::block> shapes;
   for (std::size_t first = from; first < to; first += Footprints::block) {
     const std::size_t count = std::min(Footprints::block, to - first);
-    footprints.find(solids.subspan(first, count));
-    std::array<bool, Footprints::block> seen;
-    if (hiding && first >= nextNote) {
+    for (std::size_t i = 0; i < count; ++i) {
+      shapes[i] = &solids[first + i].shape;
+      // The next block's, in time.
+      const auto* next = reinterpret_cast<const char*>(solids.data() + first + i + Footprints::block);
+      __builtin_prefetch(next), __builtin_prefetch(next + 64);
+    }
+    footprints.find(std::span(shapes).first(count));
+    if (hiding_ && first >= note) {
       depths.noteTiles();
-      nextNote = from + 2 * (first - from);
+      note = from + 2 * (note - from);
+      front = frontAt(note);
     }
+    const bool noted = hiding_ && depths.noted();
     for (std::size_t i = 0; i < count; ++i) {
-      seen[i] = footprints[i].seen() && !(hiding && depths.behindTiles(footprints[i]));
-      if (hiding && seen[i]) __builtin_prefetch(depths.middle(footprints[i]), 1);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!seen[i]) continue;
       const Footprint& f = footprints[i];
-      const ListLevel level = levelOf(f);
-      if (hiding) {
-        if (level == narrow && depths.hides(f)) continue;
-        const Shape& shape = solids[first + i].shape;
-        if (depths.worthIt(f, !std::holds_alternative<Sphere>(shape)))
-          std::visit([&](const auto& solid) { depths.add(solid); }, shape);
-      }
-      heads[level].push_back({static_cast<std::uint32_t>(first + i), f});
+      if (!f.seen() || (noted && depths.behindTiles(f))) continue;
+      if (hiding_ && f.hides <= front && depths.worthIt(f)) depths.add(f, footprints.cover(i));
+      heads[levelOf(f)].push_back({f, static_cast<std::uint32_t>(first + i)});
     }
   }
   // Of the whole scene, seen or not: so that fast has the same bits in every plan.
   farSphere = footprints.farSphere();
 }
 
-void ListBuilder::Part::pack(const World& world, RealType type, bool eyeForms, const EyeFrames& eye,
-                             const ListGrid& grid, const Limits& limits, const DepthBounds* hidden) {
+/// No branches: half of the solids are hidden.
+void ListBuilder::Part::dropHidden() {
+  for (std::vector<Head>& all : heads) {
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const bool hidden = depths.behindTiles(all[i].seen);
+      all[left] = all[i];
+      left += !hidden;
+    }
+    all.resize(left);
+  }
+}
+
+void ListBuilder::Part::lookBehind(std::span<const SolidEntry> solids, Footprints& footprints) {
+  depths.noteTiles();
+  dropHidden();
+  std::array<const Shape*, Footprints::block> shapes;
+  std::size_t count = 0;
+  const auto draw = [&] {
+    footprints.find(std::span(shapes).first(count));
+    for (std::size_t i = 0; i < count; ++i)
+      if (depths.worthIt(footprints[i])) depths.add(footprints[i], footprints.cover(i));
+    count = 0;
+  };
+  for (const std::vector<Head>& all : heads)
+    for (const Head& head : all) {
+      if (head.seen.hides == DepthScale::none || !depths.worthIt(head.seen)) continue;
+      shapes[count++] = &solids[head.solid].shape;
+      if (count == Footprints::block) draw();
+    }
+  draw();
+}
+
+void ListBuilder::Part::pack(const World& world, RealType type, bool eyeForms, const EyeFrames& eye) {
   // Those that are left lie far apart in memory: they are fetched a few ahead.
   constexpr std::size_t ahead = 8;
   const std::size_t rowSize = rowBytes(type);
+  if (hiding_) {
+    depths.noteTiles();
+    dropHidden();
+  }
   for (const ListLevel level : {wide, narrow}) {
-    const std::vector<Head>& all = heads[level];
-    reached_.clear();
-    for (std::size_t i = 0; i < all.size(); ++i)
-      if (!hidden || (reaches(all[i].seen, limits[level]) && !(level == narrow && hidden->hides(all[i].seen))))
-        reached_.push_back(static_cast<std::uint32_t>(i));
-    for (std::size_t i = 0; i < reached_.size(); ++i) {
-      const Head& head = all[reached_[i]];
-      if (i + ahead < reached_.size()) fetch(world.solids[all[reached_[i + ahead]].solid]);
+    std::vector<Head>& all = heads[level];
+    if (hiding_)
+      std::erase_if(all, [&, limits = limits(level)](const Head& head) {
+        return !reaches(head.seen, limits) || (level == narrow && depths.hides(head.seen));
+      });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Head& head = all[i];
+      if (i + ahead < all.size()) fetch(world.solids[all[i + ahead].solid]);
       std::visit(
           [&](const auto& solid) {
             if (!eyeForms) {
               RowWriter rows(type);
               packWorld(solid, eye.exact.origin, head.solid, rows);
               const auto kind = static_cast<std::size_t>(kindNumber(solid));
-              std::ranges::copy(rows.bytes(), add(kind, rows.bytes().size(), head, level, grid, limits[level]));
+              std::ranges::copy(rows.bytes(), add(kind, rows.bytes().size(), head, level));
               return;
             }
             packed(solid, eye, head.solid, type, [&](const auto& record) {
               if (record.kind < 0) return;
               grazing = grazing || record.grazing;
               std::byte* to = add(static_cast<std::size_t>(record.kind),
-                                  rowSize * static_cast<std::size_t>(record.rows), head, level, grid, limits[level]);
+                                  rowSize * static_cast<std::size_t>(record.rows), head, level);
               for (int r = 0; r < record.rows; ++r, to += rowSize) writeRow(to, type, record.row[r]);
             });
             if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
@@ -162,29 +236,29 @@ void ListBuilder::Part::pack(const World& world, RealType type, bool eyeForms, c
   }
 }
 
-std::byte* ListBuilder::Part::add(std::size_t kind, std::size_t bytes, const Head& head, ListLevel level,
-                                  const ListGrid& grid, const ListLimits& limits) {
+std::byte* ListBuilder::Part::add(std::size_t kind, std::size_t bytes, const Head& head, ListLevel level) {
   ++seen;
-  const Place place = placeOf(head.seen, limits);
+  const ListLimits limit = limits(level);
+  const Place place = placeOf(head.seen, limit);
   std::byte* to = found[level][kind].add(sizeof place + bytes);
   std::memcpy(to, &place, sizeof place);
   auto& counts = tiles[level][kind];
   if (counts.empty())
-    counts.assign(
-        level == wide ? std::size_t{1} * grid.wideAcross() * grid.wideDown() : std::size_t{1} * grid.across * grid.down,
-        0);
-  eachTile(place, limits, [&](std::size_t tile) { ++counts[tile]; });
+    counts.assign(level == wide ? std::size_t{1} * grid_.wideAcross() * grid_.wideDown()
+                                : std::size_t{1} * grid_.across * grid_.down,
+                  0);
+  eachTile(place, limit, [&](std::size_t tile) { ++counts[tile]; });
   return to + sizeof place;
 }
 
-void ListBuilder::Part::write(std::byte* rows, std::size_t rowSize, bool eyeForms, const Limits& limits) {
+void ListBuilder::Part::write(std::byte* rows, std::size_t rowSize, bool eyeForms) {
   for (const ListLevel level : {narrow, wide})
     for (std::size_t kind = 0; kind < kindCount; ++kind) {
       const auto bytes = found[level][kind].bytes();
       if (bytes.empty()) continue;
       std::uint32_t* next = tiles[level][kind].data();
-      if (rowSize == 16) writeRows<16>(bytes, rowsOf(kind, eyeForms), rows, next, limits[level]);
-      else writeRows<32>(bytes, rowsOf(kind, eyeForms), rows, next, limits[level]);
+      if (rowSize == 16) writeRows<16>(bytes, rowsOf(kind, eyeForms), rows, next, limits(level));
+      else writeRows<32>(bytes, rowsOf(kind, eyeForms), rows, next, limits(level));
     }
 }
 

@@ -19,9 +19,25 @@ std::uint32_t rowsOf(std::size_t kind, bool eyeForms);
 
 /// Of the tiles of a level, `side` pixels each, the depth beyond which nothing is seen of each; none: no limits.
 struct ListLimits {
-  const float* byTile = nullptr;
+  const DepthCode* byTile = nullptr;
   std::size_t across = 0;
   int side = 0;
+};
+
+/// Of a few hundred solids from all over the scene: how many layers of rectangles it has, and where the first of them are.
+class Crowd {
+ public:
+  Crowd() = default;
+  Crowd(std::span<const SolidEntry> solids, const Crop& region, Footprints& footprints);
+
+  /// Looking for what is hidden costs a pass over the pixels and, by solid, more than it saves where they are few.
+  bool worthLooking() const { return layers_ > 3; }
+  /// The depth that so many layers reach to.
+  DepthCode depthOf(double layers) const;
+
+ private:
+  double layers_ = 0;
+  std::vector<std::pair<DepthCode, double>> some_;  // depth, and layers up to it
 };
 
 /// Bytes at the end of which more are put, without being cleared first.
@@ -48,15 +64,13 @@ class Arena {
 
 struct ListBuilder::Part {
   struct Head {
-    std::uint32_t solid;
     Footprint seen;
+    std::uint32_t solid;
   };
   struct Place {  // tiles, first and last, that are to have the record unless it begins beyond what is seen of them
     std::uint32_t x0, y0, x1, y1;
-    float nearest;
-    std::uint32_t unused;
+    std::uint32_t nearest, unused;
   };
-  using Limits = std::array<ListLimits, 2>;  // by level
 
   DepthBounds depths;
   std::array<std::vector<Head>, 2> heads;                                  // of all that is seen
@@ -65,22 +79,26 @@ struct ListBuilder::Part {
   bool grazing = false, farSphere = false, boxOnFace = false;
   std::size_t seen = 0;
 
-  void start();
-  /// Where each solid is seen, and what it hides.
-  void look(const World& world, std::size_t from, std::size_t to, const Silhouette& silhouette, const EyeFrames& eye,
-            const ListGrid& grid, bool hiding);
-  /// Records of the solids that are in front of the depth limit of one of their tiles, and not `hidden` in every pixel.
-  void pack(const World& world, RealType type, bool eyeForms, const EyeFrames& eye, const ListGrid& grid,
-            const Limits& limits, const DepthBounds* hidden);
+  /// `hiding`: solids that are hidden are left out.
+  void start(const ListGrid& grid, bool hiding);
+  /// Where each solid is seen, and what the nearest hide; `crowd` tells how near that is.
+  void look(std::span<const SolidEntry> solids, std::size_t from, std::size_t to, Footprints& footprints,
+            const Crowd& crowd);
+  /// When all depths are known so far: what the others hide that are not known to be hidden.
+  void lookBehind(std::span<const SolidEntry> solids, Footprints& footprints);
+  /// Records of the solids that are in front of the depth limit of one of their tiles, and not hidden in every pixel.
+  void pack(const World& world, RealType type, bool eyeForms, const EyeFrames& eye);
   /// Copies every record to its tiles; tiles[][] says where each tile's next one goes.
-  void write(std::byte* rows, std::size_t rowSize, bool eyeForms, const Limits& limits);
+  void write(std::byte* rows, std::size_t rowSize, bool eyeForms);
 
  private:
   /// Room for a record of so many bytes, noted in the solid's tiles.
-  std::byte* add(std::size_t kind, std::size_t bytes, const Head& head, ListLevel level, const ListGrid& grid,
-                 const ListLimits& limits);
+  std::byte* add(std::size_t kind, std::size_t bytes, const Head& head, ListLevel level);
+  void dropHidden();
+  ListLimits limits(ListLevel level) const;
 
-  std::vector<std::uint32_t> reached_;  // of heads
+  ListGrid grid_;
+  bool hiding_ = false;
 };
 
 }  // namespace solidcast

@@ -28,10 +28,12 @@ PixelCandidates::PixelCandidates(const Scene& scene, const Silhouette& silhouett
   const Frame<double> eye(eyeFrame(scene, RealType::f64));
   const auto look = [&](std::size_t part) {
     const std::size_t from = part * share, to = std::min(from + share, solids.size());
-    Footprints footprints(silhouette, region, eye);
+    Footprints footprints(silhouette, region, eye, RealType::f64);
+    std::array<const Shape*, Footprints::block> shapes;
     for (std::size_t first = from; first < to; first += Footprints::block) {
       const std::size_t count = std::min(Footprints::block, to - first);
-      footprints.find(solids.subspan(first, count));
+      for (std::size_t k = 0; k < count; ++k) shapes[k] = &solids[first + k].shape;
+      footprints.find(std::span(shapes).first(count));
       for (std::size_t k = 0; k < count; ++k) {
         const Footprint& f = footprints[k];
         if (!f.seen()) continue;

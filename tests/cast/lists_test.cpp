@@ -129,6 +129,8 @@ TEST_F(Lists, ACasterGoesFromSceneToScene) {
   const RenderJob job = small();
   std::vector<Scene> scenes;
   for (const std::uint32_t count : {300u, 5u, 1000u}) scenes.push_back(randomScene("mixed", count, count));
+  scenes.push_back(randomScene("sphere", 6000, 8));  // which hide each other, but not what comes then
+  scenes.push_back(scenes[2]);
   scenes.push_back(fromWithin(scenes[0]));
   Scene empty = scenes[0];
   empty.world.solids.clear();
