@@ -1,7 +1,9 @@
 // Embree 3 as a peer, given what it is good at: its own spheres, discs, triangles and quads, AVX-512 with 16 wide
 // packets, the coherent flag, all threads for the build, its default build quality. Planes, boxes and quadrics, which
 // it lacks, are user geometry.
+#include "host/bench/flush_denormals.h"
 #include "host/bench/peer.h"
+#include "host/cast/workers.h"
 #include "host/error.h"
 
 #ifdef SOLIDCAST_EMBREE
@@ -13,7 +15,6 @@
 
 #include "host/bench/embree_api.h"
 #include "host/bench/kernels.h"
-#include "host/bench/workers.h"
 
 namespace solidcast::bench {
 
@@ -165,8 +166,10 @@ class EmbreePeer final : public Peer {
     const Span building = watch.lap();
     const RayView rays = rays_.view();
     const auto rows = packets_ ? kernels_.embree16 : kernels_.embree1;
-    workers_.run((rays.height + kPacketRows - 1) / kPacketRows,
-                 [&](int i) { rows(scene_, rays, light_, image_.data(), i * kPacketRows); });
+    workers_.run((rays.height + kPacketRows - 1) / kPacketRows, [&](int i) {
+      const FlushDenormals flush;
+      rows(scene_, rays, light_, image_.data(), i * kPacketRows);
+    });
     return {building, watch.lap()};
   }
   Image image() const override { return image_.image(); }

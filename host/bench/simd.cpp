@@ -2,8 +2,9 @@
 #include <glm/glm.hpp>
 
 #include "host/bench/kernels.h"
+#include "host/bench/flush_denormals.h"
 #include "host/bench/peer.h"
-#include "host/bench/workers.h"
+#include "host/cast/workers.h"
 #include "host/error.h"
 
 namespace solidcast::bench {
@@ -93,8 +94,10 @@ class SimdPeer final : public Peer {
     const RayView rays = rays_.view();
     const Light light = lightOf(scene_);
     const auto rows = skipping_ ? kernels_.simdRowsSkipping : kernels_.simdRows;
-    workers_.run((rays.height + kPacketRows - 1) / kPacketRows,
-                 [&](int i) { rows(scene, rays, light, image_.data(), i * kPacketRows); });
+    workers_.run((rays.height + kPacketRows - 1) / kPacketRows, [&](int i) {
+      const FlushDenormals flush;
+      rows(scene, rays, light, image_.data(), i * kPacketRows);
+    });
     return {build, watch.lap()};
   }
   Image image() const override { return image_.image(); }

@@ -68,16 +68,50 @@ WIDE bool ofSpheres(const View& view, Footprints::Spheres& b) {
   return far;
 }
 
-/// Corners from the eye. With COVERS the first three tell the plane: what hides by it is nowhere beyond the farthest corner,
-/// unless it is seen so flat that the shader's rounding can move it.
-template <std::size_t CORNERS, bool COVERS>
+/// Whether some centre of the 3x3 pixels from (x, y) on lies in a polygon, or nearer to it than the margin: many triangles
+/// of a fine mesh hold none. `p`: the corners around, in pixels.
+template <std::size_t CORNERS>
+inline __attribute__((always_inline)) bool holdsCentre(const double (&p)[2 * CORNERS], double x, double y,
+                                                       double margin) {
+  double inside[9];
+#pragma GCC unroll 9
+  for (double& of : inside) of = 1;
+  double turn = 0;
+#pragma GCC unroll 9
+  for (std::size_t k = 0; k < CORNERS; ++k) {
+    const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
+    turn += p[2 * k] * p[2 * next + 1] - p[2 * next] * p[2 * k + 1];
+  }
+  const double sign = turn < 0 ? -1 : 1;
+#pragma GCC unroll 9
+  for (std::size_t k = 0; k < CORNERS; ++k) {
+    const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
+    const double along = (p[2 * next] - p[2 * k]) * sign, down = (p[2 * next + 1] - p[2 * k + 1]) * sign;
+    const double first = along * (y + 0.5 - p[2 * k + 1]) - down * (x + 0.5 - p[2 * k]) +
+                         margin * (std::abs(along) + std::abs(down));
+#pragma GCC unroll 9
+    for (std::size_t i = 0; i < 9; ++i) {
+      const double at = first + along * static_cast<double>(i / 3) - down * static_cast<double>(i % 3);
+      inside[i] = at < inside[i] ? at : inside[i];
+    }
+  }
+  double best = inside[0];
+#pragma GCC unroll 9
+  for (const double of : inside) best = of > best ? of : best;
+  return best >= 0;
+}
+
+/// Corners from the eye. POLYGON: the first three tell the plane, and what hides by it is nowhere beyond the farthest
+/// corner, unless it is seen so flat that the shader's rounding can move it.
+template <std::size_t CORNERS, bool POLYGON>
 inline __attribute__((always_inline)) void corners(const View& view, auto& b) {
   const View v = view;
   for (std::size_t i = 0, count = b.count; i < count; ++i) {
     const auto& p = b.v;
     Slopes s{1e300, -1e300, 1e300, -1e300};
-    double nearest = 1e300, farthest = 0;
+    double nearest = 1e300, farthest = 0, around[2 * CORNERS];
     bool front = true, covers = false;
+#pragma GCC unroll 9
     for (std::size_t k = 0; k < CORNERS; ++k) {
       const double x = p[3 * k][i], y = p[3 * k + 1][i], z = p[3 * k + 2][i];
       const double X = v.axes[0][0] * x + v.axes[0][1] * y + v.axes[0][2] * z;
@@ -88,22 +122,27 @@ inline __attribute__((always_inline)) void corners(const View& view, auto& b) {
       s.x0 = across < s.x0 ? across : s.x0, s.x1 = across > s.x1 ? across : s.x1;
       s.y0 = down < s.y0 ? down : s.y0, s.y1 = down > s.y1 ? down : s.y1;
       nearest = Z < nearest ? Z : nearest, farthest = Z > farthest ? Z : farthest;
-      if constexpr (COVERS) {
-        const std::size_t to = CORNERS == 4 ? k ^ k >> 1 : k;  // around, not by rows
-        b.cover[2 * to][i] = across * v.perX + v.middleX, b.cover[2 * to + 1][i] = down * v.perY + v.middleY;
-      }
+      const std::size_t to = CORNERS == 4 ? k ^ k >> 1 : k;  // around, not by rows
+      around[2 * to] = across * v.perX + v.middleX, around[2 * to + 1] = down * v.perY + v.middleY;
     }
-    if constexpr (COVERS) {
+    if constexpr (POLYGON) {
+#pragma GCC unroll 9
+      for (std::size_t k = 0; k < 2 * CORNERS; ++k) b.cover[k][i] = around[k];
       const double ax = p[3][i] - p[0][i], ay = p[4][i] - p[1][i], az = p[5][i] - p[2][i];
       const double bx = p[6][i] - p[0][i], by = p[7][i] - p[1][i], bz = p[8][i] - p[2][i];
       const double nx = ay * bz - az * by, ny = az * bx - ax * bz, nz = ax * by - ay * bx;
       const double plane = nx * p[0][i] + ny * p[1][i] + nz * p[2][i], least = v.flat * farthest;
       covers = (nx * nx + ny * ny + nz * nz) * (least * least) < plane * plane;
-      // Most triangles of a fine mesh hold no centre.
       const double edges = 2 * v.margin;
       covers = covers & ((s.x1 - s.x0) * v.perX > edges) & ((s.y1 - s.y0) * v.perY > edges);
     }
     store(v, s, front, nearest, farthest * (1 + 0x1p-12), covers, i, b);
+    if constexpr (POLYGON) {
+      const bool small = (b.x1[i] - b.x0[i] < 3) & (b.y1[i] - b.y0[i] < 3);
+      const bool held = holdsCentre<CORNERS>(around, b.x0[i], b.y0[i], v.margin);
+      b.x1[i] = small & !held & v.centres ? -1 : b.x1[i];
+      b.x0[i] = small & !held & v.centres ? 0 : b.x0[i];
+    }
   }
 }
 WIDE void ofTriangles(const View& v, Footprints::Triangles& b) { corners<3, true>(v, b); }
@@ -132,6 +171,7 @@ Footprints::Footprints(const Silhouette& silhouette, const Crop& region, const F
   view_.lost = type == RealType::f32 ? 0x1p-17 : 0x1p-40;
   view_.flat = 8 * unitRoundoff(type) * std::sqrt(steep) * 0x1p12;  // an error of 2^-12
   view_.scale = scale;
+  view_.centres = silhouette.centresAlone();
 }
 
 template <class Corners>

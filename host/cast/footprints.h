@@ -59,6 +59,7 @@ class Footprints {
     double lost;         // of a sphere's q, relative to its terms: what the shader's rounding can take
     double flat;         // a flat solid seen at a smaller sine than this hides nothing
     DepthScale scale;
+    bool centres;  // rays go through the centres of pixels alone
   };
   /// Numbers of the block's solids of one kind, one array a number, and what is found of them.
   template <std::size_t NUMBERS, std::size_t COVER>

@@ -3,25 +3,13 @@
 #include <algorithm>
 #include <barrier>
 #include <cstring>
-#include <thread>
 
 #include "host/cast/list_part.h"
 
 namespace solidcast {
-namespace {
-
-void onAllThreads(std::size_t threads, const auto& work) {
-  std::vector<std::thread> helpers;
-  for (std::size_t t = 1; t < threads; ++t) helpers.emplace_back([&work, t] { work(t); });
-  work(std::size_t{0});
-  for (std::thread& helper : helpers) helper.join();
-}
-
-}  // namespace
 
 ListBuilder::ListBuilder() {
-  for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t)
-    parts_.push_back(std::make_unique<Part>());
+  for (unsigned t = 0; t < workers_.threads(); ++t) parts_.push_back(std::make_unique<Part>());
 }
 ListBuilder::~ListBuilder() = default;
 
@@ -45,7 +33,8 @@ void ListBuilder::collect(const Scene& scene, RealType type, bool eyeForms, cons
   for (std::size_t t = 0; t < threads; ++t) depths.push_back(&parts_[t]->depths);
   for (auto& part : parts_) part->start(grid, false);
   std::barrier together(static_cast<std::ptrdiff_t>(threads));
-  onAllThreads(threads, [&](std::size_t t) {
+  workers_.run(static_cast<int>(threads), [&](int at) {
+    const auto t = static_cast<std::size_t>(at);
     Part& part = *parts_[t];
     auto own = footprints();
     const auto tell = [&] {
@@ -137,9 +126,10 @@ void ListBuilder::write(std::span<std::byte> rows, std::span<std::byte> lanes, s
                         const std::array<bool, kindCount>& slots) {
   std::size_t laneBytes = sizeof(ListLane);
   for (const bool slot : slots) laneBytes += slot ? sizeof(ListSpan) : 0;
-  const auto at = [](const std::vector<std::uint32_t>& of, std::size_t i) { return of.empty() ? 0 : of[i]; };
+  const auto value = [](const std::vector<std::uint32_t>& of, std::size_t i) { return of.empty() ? 0 : of[i]; };
   const std::size_t threads = rows_ < 4096 ? 1 : parts_.size();
-  onAllThreads(threads, [&](std::size_t t) {
+  workers_.run(static_cast<int>(threads), [&](int at) {
+    const auto t = static_cast<std::size_t>(at);
     for (std::size_t lane = laneCount * t / threads; lane < laneCount * (t + 1) / threads; ++lane) {
       const std::size_t tile = order_[lane], x = tile % grid_.across, y = tile / grid_.across;
       const std::size_t wideTile = y / grid_.wide * grid_.wideAcross() + x / grid_.wide;
@@ -150,9 +140,9 @@ void ListBuilder::write(std::span<std::byte> rows, std::span<std::byte> lanes, s
       to += sizeof head;
       for (std::size_t kind = 0; kind < kindCount; ++kind) {
         if (!slots[kind]) continue;
-        const std::uint32_t wideCount = at(count_[wide][kind], wideTile);
-        const ListSpan span{at(first_[wide][kind], wideTile), wideCount, at(first_[narrow][kind], tile),
-                            wideCount + at(count_[narrow][kind], tile)};
+        const std::uint32_t wideCount = value(count_[wide][kind], wideTile);
+        const ListSpan span{value(first_[wide][kind], wideTile), wideCount, value(first_[narrow][kind], tile),
+                            wideCount + value(count_[narrow][kind], tile)};
         std::memcpy(to, &span, sizeof span);
         to += sizeof span;
       }

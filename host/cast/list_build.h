@@ -10,6 +10,7 @@
 
 #include "host/cast/records.h"
 #include "host/cast/silhouette.h"
+#include "host/cast/workers.h"
 #include "host/image/band.h"
 #include "host/scene/world.h"
 
@@ -69,6 +70,7 @@ class ListBuilder {
   ListGrid grid_;
   RealType type_{};
   bool eyeForms_ = true;
+  Workers workers_;
   std::vector<std::unique_ptr<Part>> parts_;
   std::array<bool, kindCount> kinds_{};
   bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, wideOnes_ = false;

@@ -1,6 +1,9 @@
 #include "host/cast/list_part.h"
 
 #include <algorithm>
+#include <optional>
+
+#include "host/cast/record_batch.h"
 
 namespace solidcast {
 namespace {
@@ -92,13 +95,16 @@ Crowd::Crowd(std::span<const SolidEntry> solids, const Crop& region, Footprints&
     footprints.find(std::span(shapes).first(count));
     for (std::size_t k = 0; k < count; ++k) {
       const Footprint& f = footprints[k];
-      if (f.seen() && f.hides != DepthScale::none)
-        some_.push_back({f.hides, (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1) * share});
+      if (!f.seen() || f.hides == DepthScale::none) continue;
+      const double layers = (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1) * share;
+      some_.push_back({f.hides, layers});
+      worth_ += layers / (footprints.cover(k).corners == 0 ? 3 : 10);
     }
     count = 0;
   }
   std::sort(some_.begin(), some_.end());
-  for (auto& [depth, layers] : some_) layers_ += layers, layers = layers_;
+  double sum = 0;
+  for (auto& [depth, layers] : some_) layers = sum += layers;
 }
 
 DepthCode Crowd::depthOf(double layers) const {
@@ -195,10 +201,83 @@ void ListBuilder::Part::lookBehind(std::span<const SolidEntry> solids, Footprint
   draw();
 }
 
+/// Records of one level's solids, kind by kind in the order of the solids.
+class ListBuilder::Part::Packing {
+ public:
+  Packing(Part& part, ListLevel level, const World& world, RealType type, bool eyeForms, const EyeFrames& eye)
+      : part_(part), level_(level), world_(world), type_(type), eyeForms_(eyeForms), eye_(eye) {}
+
+  void add(const Head& head) {
+    std::visit([&](const auto& solid) { put(solid, head); }, world_.solids[head.solid].shape);
+  }
+  void finish() { flush(spheres_), flush(triangles_), flush(quads_); }
+
+ private:
+  struct Many {
+    RecordBatch records;
+    std::array<const Head*, RecordBatch::block> heads;
+  };
+
+  void put(const auto& solid, const Head& head) { alone(solid, head); }
+  void put(const Sphere& solid, const Head& head) { together(solid, head, spheres_); }
+  void put(const Triangle& solid, const Head& head) { together(solid, head, triangles_); }
+  void put(const Quad& solid, const Head& head) { together(solid, head, quads_); }
+
+  void together(const auto& solid, const Head& head, std::optional<Many>& many) {
+    if (!eyeForms_ || type_ != RealType::f32) return alone(solid, head);
+    if (!many) many.emplace(Many{RecordBatch(kindNumber(solid)), {}});
+    many->heads[many->records.size()] = &head;
+    if (!many->records.add(solid, head.solid, eye_.plain)) return alone(solid, head);
+    if (many->records.full()) flush(many);
+  }
+
+  void flush(std::optional<Many>& many) {
+    if (!many) return;
+    const RecordBatch& records = many->records;
+    const std::uint32_t rows = rowsOf(static_cast<std::size_t>(records.kind()), true);
+    for (std::size_t i = 0, count = many->records.pack(eye_.plain); i < count; ++i) {
+      const Head& head = *many->heads[i];
+      if (records.poor(i)) {
+        std::visit([&](const auto& solid) { alone(solid, head); }, world_.solids[head.solid].shape);
+        continue;
+      }
+      part_.grazing = part_.grazing || records.grazing(i);
+      records.copy(i, part_.add(static_cast<std::size_t>(records.kind()), 16 * rows, head, level_), 4 * rows);
+    }
+  }
+
+  void alone(const auto& solid, const Head& head) {
+    if (!eyeForms_) {
+      RowWriter rows(type_);
+      packWorld(solid, eye_.exact.origin, head.solid, rows);
+      const auto kind = static_cast<std::size_t>(kindNumber(solid));
+      std::ranges::copy(rows.bytes(), part_.add(kind, rows.bytes().size(), head, level_));
+      return;
+    }
+    packed(solid, eye_, head.solid, type_, [&](const auto& record) {
+      if (record.kind < 0) return;
+      part_.grazing = part_.grazing || record.grazing;
+      const std::size_t rowSize = rowBytes(type_);
+      std::byte* to = part_.add(static_cast<std::size_t>(record.kind), rowSize * static_cast<std::size_t>(record.rows),
+                                head, level_);
+      for (int r = 0; r < record.rows; ++r, to += rowSize) writeRow(to, type_, record.row[r]);
+    });
+    if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
+      part_.boxOnFace = part_.boxOnFace || eyeOnFacePlane(solid, eye_.extended);
+  }
+
+  Part& part_;
+  const ListLevel level_;
+  const World& world_;
+  const RealType type_;
+  const bool eyeForms_;
+  const EyeFrames& eye_;
+  std::optional<Many> spheres_, triangles_, quads_;
+};
+
 void ListBuilder::Part::pack(const World& world, RealType type, bool eyeForms, const EyeFrames& eye) {
   // Those that are left lie far apart in memory: they are fetched a few ahead.
   constexpr std::size_t ahead = 8;
-  const std::size_t rowSize = rowBytes(type);
   if (hiding_) {
     depths.noteTiles();
     dropHidden();
@@ -209,30 +288,12 @@ void ListBuilder::Part::pack(const World& world, RealType type, bool eyeForms, c
       std::erase_if(all, [&, limits = limits(level)](const Head& head) {
         return !reaches(head.seen, limits) || (level == narrow && depths.hides(head.seen));
       });
+    Packing packing(*this, level, world, type, eyeForms, eye);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const Head& head = all[i];
       if (i + ahead < all.size()) fetch(world.solids[all[i + ahead].solid]);
-      std::visit(
-          [&](const auto& solid) {
-            if (!eyeForms) {
-              RowWriter rows(type);
-              packWorld(solid, eye.exact.origin, head.solid, rows);
-              const auto kind = static_cast<std::size_t>(kindNumber(solid));
-              std::ranges::copy(rows.bytes(), add(kind, rows.bytes().size(), head, level));
-              return;
-            }
-            packed(solid, eye, head.solid, type, [&](const auto& record) {
-              if (record.kind < 0) return;
-              grazing = grazing || record.grazing;
-              std::byte* to = add(static_cast<std::size_t>(record.kind),
-                                  rowSize * static_cast<std::size_t>(record.rows), head, level);
-              for (int r = 0; r < record.rows; ++r, to += rowSize) writeRow(to, type, record.row[r]);
-            });
-            if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
-              boxOnFace = boxOnFace || eyeOnFacePlane(solid, eye.extended);
-          },
-          world.solids[head.solid].shape);
+      packing.add(all[i]);
     }
+    packing.finish();
   }
 }
 

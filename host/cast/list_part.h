@@ -24,19 +24,20 @@ struct ListLimits {
   int side = 0;
 };
 
-/// Of a few hundred solids from all over the scene: how many layers of rectangles it has, and where the first of them are.
+/// Of a few hundred solids from all over the scene: how many layers of rectangles it has, and how deep they lie.
 class Crowd {
  public:
   Crowd() = default;
   Crowd(std::span<const SolidEntry> solids, const Crop& region, Footprints& footprints);
 
-  /// Looking for what is hidden costs a pass over the pixels and, by solid, more than it saves where they are few.
-  bool worthLooking() const { return layers_ > 3; }
+  /// Looking for what is hidden costs a pass over the pixels and, by solid, a few rows of them: it pays from some 3 layers
+  /// of spheres on, 10 of polygons (each covers half of its rectangle and is drawn by its edges).
+  bool worthLooking() const { return worth_ > 1; }
   /// The depth that so many layers reach to.
   DepthCode depthOf(double layers) const;
 
  private:
-  double layers_ = 0;
+  double worth_ = 0;
   std::vector<std::pair<DepthCode, double>> some_;  // depth, and layers up to it
 };
 
@@ -92,6 +93,7 @@ struct ListBuilder::Part {
   void write(std::byte* rows, std::size_t rowSize, bool eyeForms);
 
  private:
+  class Packing;
   /// Room for a record of so many bytes, noted in the solid's tiles.
   std::byte* add(std::size_t kind, std::size_t bytes, const Head& head, ListLevel level);
   void dropHidden();

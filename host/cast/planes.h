@@ -35,16 +35,6 @@ inline void readLevels(const std::uint32_t* plane, int stride, const Band& band,
 }
 
 /// Three equal bytes a pixel, from a plane of bytes.
-inline void readGreys(const std::uint8_t* plane, int stride, const Band& band, std::vector<std::uint8_t>& to) {
-  to.resize(static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.rows) * 3);
-  std::uint8_t *out = to.data(), *const last = out + to.size() - 3;
-  for (int y = 0; y < band.rows; ++y) {
-    const std::uint8_t* row = plane + static_cast<std::size_t>(y) * static_cast<std::size_t>(stride);
-    for (int x = 0; x < band.width; ++x, out += 3) {
-      const std::uint32_t levels = row[x] * 0x10101u;
-      std::memcpy(out, &levels, out == last ? 3 : 4);
-    }
-  }
-}
+void readGreys(const std::uint8_t* plane, int stride, const Band& band, std::vector<std::uint8_t>& to);
 
 }  // namespace solidcast

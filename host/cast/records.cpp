@@ -96,7 +96,7 @@ Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
       auto kind = static_cast<std::uint32_t>(record.kind < 0 ? kindCount : record.kind);
       places.push_back({kind, kind < kindCount ? static_cast<std::uint32_t>(rows[kind].rows()) : 0});
       for (int r = 0; r < record.rows; ++r) rows[kind].add(record.row[r]);
-      flags.grazing = flags.grazing || record.grazing;
+      flags.grazing = flags.grazing || (record.kind >= 0 && record.grazing);
     };
     std::visit([&](const auto& s) { packed(s, frames, i, type, keep); }, shape);
     if (const auto* sphere = std::get_if<Sphere>(&shape))

@@ -115,17 +115,17 @@ struct EyeRecord {
   /// has to be below 2^-3 u.
   void counts(T value, T terms) {
     if constexpr (!std::is_same_v<T, f128>)
-      if (!(magnitude(value) >= terms * (type == RealType::f32 ? T(0x1p-20) : T(0x1p-5)))) poor = true;
+      poor |= !(magnitude(value) >= terms * (type == RealType::f32 ? T(0x1p-20) : T(0x1p-5)));
   }
   /// The same for a value that only scales s and the cosine, where 2^-32 relative does no harm.
   void scales(T value, T terms) {
     if constexpr (!std::is_same_v<T, f128>)
-      if (!(magnitude(value) >= terms * T(0x1p-18))) poor = true;
+      poor |= !(magnitude(value) >= terms * T(0x1p-18));
   }
   /// A flat solid whose plane passes the eye at `distance` and whose farthest point is at `farthest`: the cosine is at
   /// least their ratio, and s keeps 2^-28 relative where 7u <= 2^-28 of it.
   void mayGraze(T distance, T farthest) {
-    if (magnitude(distance) < T(unitRoundoff(type) * twoTo(31)) * farthest) grazing = true;
+    grazing |= magnitude(distance) < T(unitRoundoff(type) * twoTo(31)) * farthest;
   }
 };
 

@@ -11,19 +11,19 @@ inline bool isFar(const Sphere& sphere, const Frame<double>& eye) {
   return dot(f, f) > 256 * r * r;
 }
 
+/// The eye is so near the surface that the numerator sqrt(q) - b would cancel: the quadric's careful form does not.
+/// `far`: |f|^2, `C`: |f|^2 - r^2.
 template <class T>
-void packEye(const Sphere& sphere, const Frame<T>& eye, T index, EyeRecord<T>& out) {
-  Vec3<T> f = -eye.relative(sphere.center);
-  T r = sphere.radius / eye.unit;
+bool nearSurface(T far, T C, RealType type) {
+  const T near = twoTo(type == RealType::f64 ? -20 : type == RealType::df32 ? -12 : -4);
+  return magnitude(C) < near * far;
+}
+
+/// `f`: the eye from the centre, in the eye's unit as `r` is.
+template <class T>
+void sphereForms(Vec3<T> f, T r, const Frame<T>& eye, T index, EyeRecord<T>& out) {
   T far = dot(f, f), C = far - r * r;
   out.counts(C, far);
-  if (magnitude(C) <= T(twoTo(-100)) * far) C = 0;  // the eye is on the surface, as far as binary128 can tell
-  // Near the surface the numerator sqrt(q) - b cancels: the quadric's careful form does not.
-  T near = twoTo(out.type == RealType::f64 ? -20 : out.type == RealType::df32 ? -12 : -4);
-  if (magnitude(C) < near * far) {
-    quadricForms<T>({1, 1, 1, 0, 0, 0}, f, C, eye, index, out, false);
-    return;
-  }
   // In this unit of length the error of q is bounded by DOUBT |d|^2: its scale is 1.
   T u = unitRoundoff(out.type);
   T sigma = 1 / squareRoot(larger(T(1), u * T(twoTo(57))) * (far + magnitude(C)));
@@ -31,6 +31,17 @@ void packEye(const Sphere& sphere, const Frame<T>& eye, T index, EyeRecord<T>& o
   out.kind = kinds::sphere;
   out.add(eye.toCamera(C < 0 ? -f : f) * sigma, C);
   out.add(sigma / magnitude(C), (C < 0 ? -1 : 1) / (sigma * r), index, sigma * sigma * r * r);
+}
+
+template <class T>
+void packEye(const Sphere& sphere, const Frame<T>& eye, T index, EyeRecord<T>& out) {
+  Vec3<T> f = -eye.relative(sphere.center);
+  T r = sphere.radius / eye.unit;
+  T far = dot(f, f), C = far - r * r;
+  if (!nearSurface(far, C, out.type)) return sphereForms(f, r, eye, index, out);
+  out.counts(C, far);
+  if (magnitude(C) <= T(twoTo(-100)) * far) C = 0;  // the eye is on the surface, as far as binary128 can tell
+  quadricForms<T>({1, 1, 1, 0, 0, 0}, f, C, eye, index, out, false);
 }
 
 inline void packWorld(const Sphere& sphere, V3 origin, f128 index, RowWriter& out) {

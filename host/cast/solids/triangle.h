@@ -29,7 +29,6 @@ void spanForms(const Span<T>& s, bool quad, const Frame<T>& eye, T index, EyeRec
   T num = dot(n, f), area = length(n), l1 = length(e1), l2 = length(e2), reach = length(f);
   out.counts(area, l1 * l2);
   out.scales(num, area * reach);
-  if (num == 0) return;  // the eye is in its plane
   Vec3<T> m = n / num;
   auto edge = [&](Vec3<T> along, Vec3<T> point, T terms) {
     Vec3<T> form = cross(along, point);
@@ -48,6 +47,7 @@ void spanForms(const Span<T>& s, bool quad, const Frame<T>& eye, T index, EyeRec
     out.add(edge(f + e1, e2 - e1, (reach + l1) * (l1 + l2)), 0);
   }
   out.mayGraze(num / area, reach + l1 + l2);
+  if (num == 0) out.kind = -1, out.rows = 0;  // the eye is in its plane
 }
 
 inline void spanWorld(const Span<f128>& s, V3 origin, f128 index, RowWriter& out) {

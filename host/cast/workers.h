@@ -1,5 +1,5 @@
-// Threads that stay, so that a peer does not pay for starting them: all cores take the next piece of work until none is
-// left.
+// Threads that stay, for work of a millisecond or so, of which starting them would be a part: all cores take the next piece
+// until none is left.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -8,14 +8,15 @@
 #include <thread>
 #include <vector>
 
-namespace solidcast::bench {
+namespace solidcast {
 
 class Workers {
  public:
   Workers();
   ~Workers();
   Workers(const Workers&) = delete;
-  /// work(i) for all i below `count`, on all threads, the caller's among them. `work` must not throw.
+  /// work(i) for all i below `count`, on all threads, the caller's among them. `work` must not throw. Up to threads() pieces
+  /// are under way at the same time, so that they may wait for each other.
   void run(int count, const std::function<void(int)>& work);
   unsigned threads() const { return static_cast<unsigned>(helpers_.size()) + 1; }
 
@@ -32,4 +33,4 @@ class Workers {
   std::vector<std::thread> helpers_;
 };
 
-}  // namespace solidcast::bench
+}  // namespace solidcast

@@ -1,19 +1,8 @@
-#include "host/bench/workers.h"
-
-#include <immintrin.h>
+#include "host/cast/workers.h"
 
 #include <algorithm>
 
-namespace solidcast::bench {
-namespace {
-
-/// Embree asks for this in every thread; denormal numbers would cost every peer alike.
-void flushDenormals() {
-  _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-  _mm_setcsr(_mm_getcsr() | 0x0040);  // denormals are zero
-}
-
-}  // namespace
+namespace solidcast {
 
 Workers::Workers() {
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
@@ -30,15 +19,13 @@ Workers::~Workers() {
 }
 
 void Workers::run(int count, const std::function<void(int)>& work) {
-  const unsigned before = _mm_getcsr();
+  if (count == 1) return work(0);
   {
     const std::lock_guard lock(mutex_);
     work_ = &work, count_ = count, next_ = 0, busy_ = static_cast<int>(helpers_.size()), ++round_;
   }
   start_.notify_all();
-  flushDenormals();
   take();
-  _mm_setcsr(before);
   std::unique_lock lock(mutex_);
   end_.wait(lock, [this] { return busy_ == 0; });
 }
@@ -48,7 +35,6 @@ void Workers::take() {
 }
 
 void Workers::help() {
-  flushDenormals();
   for (int seen = 0;;) {
     {
       std::unique_lock lock(mutex_);
@@ -62,4 +48,4 @@ void Workers::help() {
   }
 }
 
-}  // namespace solidcast::bench
+}  // namespace solidcast

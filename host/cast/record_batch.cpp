@@ -1,0 +1,76 @@
+#include "host/cast/record_batch.h"
+
+#include <utility>
+
+#include "host/cast/wide.h"
+
+namespace solidcast {
+namespace {
+
+constexpr std::size_t block = RecordBatch::block;
+using Flags = std::int32_t[block];
+
+Vec3<double> triple(const RecordBatch::Numbers& n, std::size_t first, std::size_t i) {
+  return {n.v[first][i], n.v[first + 1][i], n.v[first + 2][i]};
+}
+
+template <int ROWS>
+inline __attribute__((always_inline)) void store(const EyeRecord<double>& record, std::size_t i, RecordBatch::Rows& rows,
+                                                 Flags& poor, Flags& grazing) {
+#pragma GCC unroll 20
+  for (int k = 0; k < 4 * ROWS; ++k) rows[k][i] = static_cast<float>(record.row[k / 4][k % 4]);
+  poor[i] = record.poor | (record.kind < 0), grazing[i] = record.grazing;
+}
+
+__attribute__((flatten)) WIDE void ofSpheres(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count, RecordBatch::Rows& rows,
+                    Flags& poor, Flags& grazing) {
+  for (std::size_t i = 0; i < count; ++i) {
+    EyeRecord<double> record(RealType::f32);
+    sphereForms(triple(n, 0, i), n.v[3][i], eye, n.index[i], record);
+    store<2>(record, i, rows, poor, grazing);
+  }
+}
+
+template <bool QUAD>
+inline __attribute__((always_inline)) void spans(const Frame<double>& eye, const RecordBatch::Numbers& n,
+                                                 std::size_t count, RecordBatch::Rows& rows, Flags& poor,
+                                                 Flags& grazing) {
+  for (std::size_t i = 0; i < count; ++i) {
+    EyeRecord<double> record(RealType::f32);
+    spanForms<double>({triple(n, 0, i), triple(n, 3, i), triple(n, 6, i)}, QUAD, eye, n.index[i], record);
+    store<QUAD ? 5 : 4>(record, i, rows, poor, grazing);
+  }
+}
+__attribute__((flatten)) WIDE void ofTriangles(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count, RecordBatch::Rows& rows,
+                      Flags& poor, Flags& grazing) {
+  spans<false>(eye, n, count, rows, poor, grazing);
+}
+__attribute__((flatten)) WIDE void ofQuads(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count, RecordBatch::Rows& rows,
+                  Flags& poor, Flags& grazing) {
+  spans<true>(eye, n, count, rows, poor, grazing);
+}
+
+}  // namespace
+
+bool RecordBatch::add(const Sphere& sphere, std::uint32_t index, const Frame<double>& eye) {
+  const Vec3<double> f = -eye.relative(sphere.center);
+  const double r = sphere.radius / eye.unit, far = dot(f, f);
+  if (nearSurface(far, far - r * r, RealType::f32)) return false;
+  put(0, f);
+  numbers_.v[3][count_] = r, numbers_.index[count_++] = index;
+  return true;
+}
+
+bool RecordBatch::add(const Span<double>& span, std::uint32_t index) {
+  put(0, span.v1), put(3, span.e1), put(6, span.e2);
+  numbers_.index[count_++] = index;
+  return true;
+}
+
+std::size_t RecordBatch::pack(const Frame<double>& eye) {
+  const auto of = kind_ == kinds::sphere ? ofSpheres : kind_ == kinds::triangle ? ofTriangles : ofQuads;
+  of(eye, numbers_, count_, row_, poor_, grazing_);
+  return std::exchange(count_, 0);
+}
+
+}  // namespace solidcast

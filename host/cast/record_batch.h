@@ -1,0 +1,57 @@
+// fp32 records for one eye, of many solids of a kind at a time: the very numbers that packed() gives, by loops that the
+// compiler turns into vectors. A record alone takes up to 25 divisions and roots.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include "host/cast/solids/all.h"
+
+namespace solidcast {
+
+class RecordBatch {
+ public:
+  static constexpr std::size_t block = 64;
+
+  /// Of kinds::sphere, triangle or quad.
+  explicit RecordBatch(int kind) : kind_(kind) {}
+  int kind() const { return kind_; }
+  std::size_t size() const { return count_; }
+  bool full() const { return count_ == block; }
+  /// `index`: of the solid in the world. False: it is to be packed alone (a sphere with the eye near its surface).
+  bool add(const Sphere& sphere, std::uint32_t index, const Frame<double>& eye);
+  bool add(const Triangle& triangle, std::uint32_t index, const Frame<double>&) {
+    return add(span<double>(triangle), index);
+  }
+  bool add(const Quad& quad, std::uint32_t index, const Frame<double>&) { return add(span<double>(quad), index); }
+
+  /// Calculates the records of all that were added since the last time, and forgets them; the count of them.
+  std::size_t pack(const Frame<double>& eye);
+  /// Of the i-th, in the order that they were added. Poor (EyeRecord::poor): fp64 does not serve, to be packed alone.
+  bool poor(std::size_t i) const { return poor_[i] != 0; }
+  bool grazing(std::size_t i) const { return grazing_[i] != 0; }
+  /// The numbers of its rows, one after the other.
+  void copy(std::size_t i, std::byte* to, std::size_t numbers) const {
+    for (std::size_t k = 0; k < numbers; ++k) std::memcpy(to + k * sizeof(float), &row_[k][i], sizeof(float));
+  }
+
+  /// One array a number.
+  struct Numbers {
+    alignas(64) double v[9][block], index[block];
+  };
+  using Rows = float[20][block];
+
+ private:
+  bool add(const Span<double>& span, std::uint32_t index);
+  void put(std::size_t first, const Vec3<double>& v) {
+    for (std::size_t k = 0; k < 3; ++k) numbers_.v[first + k][count_] = v[static_cast<int>(k)];
+  }
+
+  int kind_;
+  std::size_t count_ = 0;
+  Numbers numbers_;
+  alignas(64) Rows row_{};
+  alignas(64) std::int32_t poor_[block]{}, grazing_[block]{};
+};
+
+}  // namespace solidcast
