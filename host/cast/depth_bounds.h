@@ -16,7 +16,7 @@ namespace solidcast {
 
 class DepthBounds {
  public:
-  static constexpr int side = 4;  // of a tile
+  static constexpr int side = Footprints::tile;
 
   /// No pixel of the region hidden. Padding up to stride x rows, both multiples of `side`, bounds nothing; wide tiles are
   /// of `wide` x `wide` tiles.

@@ -101,6 +101,41 @@ inline __attribute__((always_inline)) bool holdsCentre(const double (&p)[2 * COR
   return best >= 0;
 }
 
+/// Footprint::misses of a polygon: an edge has all centres of the tile's part of the rectangle on its outer side, and not
+/// nearer than the margin. `p`: the corners around, in pixels.
+template <std::size_t CORNERS>
+inline __attribute__((always_inline)) std::int32_t missedTiles(const double (&p)[2 * CORNERS], std::int32_t x0,
+                                                               std::int32_t y0, std::int32_t x1, std::int32_t y1,
+                                                               double margin) {
+  constexpr std::int32_t last = Footprints::tile - 1;
+  const std::int32_t splitX = (x0 | last) + 1, splitY = (y0 | last) + 1;  // where the second tiles begin
+  const double left[2] = {x0 + 0.5, splitX + 0.5}, right[2] = {(x1 < splitX ? x1 : splitX - 1) + 0.5, x1 + 0.5};
+  const double top[2] = {y0 + 0.5, splitY + 0.5}, bottom[2] = {(y1 < splitY ? y1 : splitY - 1) + 0.5, y1 + 0.5};
+  double turn = 0, inside[4] = {1, 1, 1, 1};
+#pragma GCC unroll 9
+  for (std::size_t k = 0; k < CORNERS; ++k) {
+    const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
+    turn += p[2 * k] * p[2 * next + 1] - p[2 * next] * p[2 * k + 1];
+  }
+  const double sign = turn < 0 ? -1 : 1;
+#pragma GCC unroll 9
+  for (std::size_t k = 0; k < CORNERS; ++k) {
+    const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
+    const double along = (p[2 * next] - p[2 * k]) * sign, down = (p[2 * next + 1] - p[2 * k + 1]) * sign;
+    const double near = margin * (std::abs(along) + std::abs(down));
+#pragma GCC unroll 9
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double x = down > 0 ? left[i % 2] : right[i % 2], y = along > 0 ? bottom[i / 2] : top[i / 2];
+      const double at = along * (y - p[2 * k + 1]) - down * (x - p[2 * k]) + near;
+      inside[i] = at < inside[i] ? at : inside[i];
+    }
+  }
+  const bool few = (x1 - splitX < Footprints::tile) & (y1 - splitY < Footprints::tile);
+  const std::int32_t missed = (inside[0] < 0 ? 1 : 0) + (inside[1] < 0 ? 2 : 0) + (inside[2] < 0 ? 4 : 0) +
+                              (inside[3] < 0 ? 8 : 0);
+  return few ? missed : 0;
+}
+
 /// Corners from the eye. POLYGON: the first three tell the plane, and what hides by it is nowhere beyond the farthest
 /// corner, unless it is seen so flat that the shader's rounding can move it.
 template <std::size_t CORNERS, bool POLYGON>
@@ -138,10 +173,10 @@ inline __attribute__((always_inline)) void corners(const View& view, auto& b) {
     }
     store(v, s, front, nearest, farthest * (1 + 0x1p-12), covers, i, b);
     if constexpr (POLYGON) {
-      const bool small = (b.x1[i] - b.x0[i] < 3) & (b.y1[i] - b.y0[i] < 3);
-      const bool held = holdsCentre<CORNERS>(around, b.x0[i], b.y0[i], v.margin);
-      b.x1[i] = small & !held & v.centres ? -1 : b.x1[i];
-      b.x0[i] = small & !held & v.centres ? 0 : b.x0[i];
+      const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
+      b.misses[i] = missedTiles<CORNERS>(around, x0, y0, x1, y1, v.edges);
+      const bool held = holdsCentre<CORNERS>(around, x0, y0, v.edges);
+      b.x1[i] = (x1 - x0 < 3) & (y1 - y0 < 3) & !held ? -1 : x1;
     }
   }
 }
@@ -171,7 +206,7 @@ Footprints::Footprints(const Silhouette& silhouette, const Crop& region, const F
   view_.lost = type == RealType::f32 ? 0x1p-17 : 0x1p-40;
   view_.flat = 8 * unitRoundoff(type) * std::sqrt(steep) * 0x1p12;  // an error of 2^-12
   view_.scale = scale;
-  view_.centres = silhouette.centresAlone();
+  view_.edges = silhouette.centresAlone() ? view_.margin : 1e9;
 }
 
 template <class Corners>
@@ -190,7 +225,8 @@ void Footprints::spread(auto& batch, std::span<const Shape* const> solids, std::
                                             batch.x1[i],
                                             batch.y1[i],
                                             static_cast<DepthCode>(batch.nearest[i]),
-                                            static_cast<DepthCode>(batch.hides[i])}
+                                            static_cast<DepthCode>(batch.hides[i]),
+                                            static_cast<std::uint32_t>(batch.misses[i])}
                                 : ask(*solids[at]);
   }
   batch.count = 0;
@@ -240,12 +276,12 @@ Cover Footprints::cover(std::size_t i) const {
 Footprint Footprints::ask(const Shape& shape) const {
   const Rectangle r = std::visit([&](const auto& solid) { return silhouette_.rectangle(solid); }, shape);
   const std::int32_t nearest = view_.scale.down(static_cast<float>(r.nearest * (1 - 1e-6)));
-  Footprint f{0, 0, region_.width - 1, region_.height - 1, static_cast<DepthCode>(nearest), DepthScale::none};
+  Footprint f{0, 0, region_.width - 1, region_.height - 1, static_cast<DepthCode>(nearest), DepthScale::none, 0};
   if (r.everywhere) return f;
   // With NaN, max and min in this order are as far as possible.
   const auto from = [](double v) { return std::max(0.0, v); };
   const auto to = [](double last, double v) { return std::min(last, v); };
-  if (r.x.from > r.x.to || r.y.from > r.y.to) return {0, 0, -1, -1, 0, DepthScale::none};
+  if (r.x.from > r.x.to || r.y.from > r.y.to) return {0, 0, -1, -1, 0, DepthScale::none, 0};
   pixels(from(r.x.from - 0.5 - region_.x), to(view_.lastX, r.x.to - 0.5 - region_.x), view_.lastX, f.x0, f.x1);
   pixels(from(r.y.from - 0.5 - region_.y), to(view_.lastY, r.y.to - 0.5 - region_.y), view_.lastY, f.y0, f.y1);
   return f;

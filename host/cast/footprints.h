@@ -21,6 +21,8 @@ struct Footprint {
   std::int32_t x0, y0, x1, y1;
   DepthCode nearest;  // Rectangle::nearest, not rounded up
   DepthCode hides;    // beyond it, what the solid covers is hidden; DepthScale::none: hides nothing
+  // Of a solid in no more than 2x2 tiles of the region: which of them it is not seen in, bits by rows. 0 of others.
+  std::uint32_t misses;
   bool seen() const { return x0 <= x1 && y0 <= y1; }
 };
 
@@ -35,6 +37,7 @@ struct Cover {
 class Footprints {
  public:
   static constexpr std::size_t block = 64;
+  static constexpr int tile = 4;  // pixels a side
 
   /// `type`: of the records, whose rounding what is covered must stand. `scale`: of the depths.
   Footprints(const Silhouette& silhouette, const Crop& region, const Frame<double>& eye, RealType type,
@@ -59,7 +62,7 @@ class Footprints {
     double lost;         // of a sphere's q, relative to its terms: what the shader's rounding can take
     double flat;         // a flat solid seen at a smaller sine than this hides nothing
     DepthScale scale;
-    bool centres;  // rays go through the centres of pixels alone
+    double edges;  // the margin where rays go through the centres of pixels alone; more than all otherwise
   };
   /// Numbers of the block's solids of one kind, one array a number, and what is found of them.
   template <std::size_t NUMBERS, std::size_t COVER>
@@ -68,7 +71,7 @@ class Footprints {
     std::array<std::uint8_t, block> at;  // the solid's place in the block
     std::size_t count = 0;
     alignas(64) std::int32_t x0[block], y0[block], x1[block], y1[block], nearest[block], hides[block];
-    alignas(64) std::int32_t plain[block];  // it serves
+    alignas(64) std::int32_t plain[block], misses[block]{};  // it serves; Footprint::misses
     alignas(64) double cover[COVER][block];
   };
   using Spheres = Batch<4, 4>;

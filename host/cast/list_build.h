@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "host/cast/footprints.h"
 #include "host/cast/records.h"
 #include "host/cast/silhouette.h"
 #include "host/cast/workers.h"
@@ -18,7 +19,7 @@ namespace solidcast {
 
 /// Part of the image in tiles, and in wide tiles of `wide` x `wide` of them, for solids that would be in too many.
 struct ListGrid {
-  static constexpr int tile = 4;  // pixels a side
+  static constexpr int tile = Footprints::tile;
   Crop region;                    // in pixels of the whole image
   int across = 0, down = 0;       // tiles; the planes' padding is covered as well
   int wide = 16;

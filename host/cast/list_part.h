@@ -44,17 +44,17 @@ class Crowd {
 /// Bytes at the end of which more are put, without being cleared first.
 class Arena {
  public:
-  std::byte* add(std::size_t bytes) {
+  /// Room at the end, of which so much is kept as is taken.
+  std::byte* room(std::size_t bytes) {
     if (used_ + bytes > room_) {
       room_ = std::max<std::size_t>({2 * room_, used_ + bytes, std::size_t{1} << 16});
       auto bigger = std::make_unique_for_overwrite<std::byte[]>(room_);
       std::memcpy(bigger.get(), data_.get(), used_);
       data_ = std::move(bigger);
     }
-    std::byte* to = data_.get() + used_;
-    used_ += bytes;
-    return to;
+    return data_.get() + used_;
   }
+  void take(std::size_t bytes) { used_ += bytes; }
   void clear() { used_ = 0; }
   std::span<const std::byte> bytes() const { return {data_.get(), used_}; }
 
@@ -68,14 +68,10 @@ struct ListBuilder::Part {
     Footprint seen;
     std::uint32_t solid;
   };
-  struct Place {  // tiles, first and last, that are to have the record unless it begins beyond what is seen of them
-    std::uint32_t x0, y0, x1, y1;
-    std::uint32_t nearest, unused;
-  };
-
   DepthBounds depths;
   std::array<std::vector<Head>, 2> heads;                                  // of all that is seen
-  std::array<std::array<Arena, kindCount>, 2> found;                       // Place and record, one after the other
+  // By solid: how many tiles are to have it, these tiles, its record.
+  std::array<std::array<Arena, kindCount>, 2> found;
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> tiles;  // entries by tile; then where the next goes
   bool grazing = false, farSphere = false, boxOnFace = false;
   std::size_t seen = 0;
@@ -94,7 +90,7 @@ struct ListBuilder::Part {
 
  private:
   class Packing;
-  /// Room for a record of so many bytes, noted in the solid's tiles.
+  /// Room for a record of so many bytes, noted in the tiles that may see the solid.
   std::byte* add(std::size_t kind, std::size_t bytes, const Head& head, ListLevel level);
   void dropHidden();
   ListLimits limits(ListLevel level) const;
