@@ -1,8 +1,8 @@
 // Records of the hand-written peer, calculated in fp64 and rounded once, and its run over all cores.
 #include <glm/glm.hpp>
 
-#include "host/bench/kernels.h"
 #include "host/bench/flush_denormals.h"
+#include "host/bench/kernels.h"
 #include "host/bench/peer.h"
 #include "host/cast/workers.h"
 #include "host/error.h"

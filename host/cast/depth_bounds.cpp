@@ -17,24 +17,36 @@ using Places = std::int16_t __attribute__((vector_size(2 * lanes)));
 /// Rows of a solid that are looked at together, by eights; the pixels of each that it covers, from its rectangle's left on.
 constexpr int together = 32, eight = 8;
 struct Spans {
-  alignas(64) std::int16_t first[together], end[together];
+  alignas(64) std::int32_t first[together], end[together];
 };
 
-inline double most(double a, double b) { return a > b ? a : b; }
-inline double least(double a, double b) { return a < b ? a : b; }
+template <class T>
+inline T most(T a, T b) {
+  return a > b ? a : b;
+}
+template <class T>
+inline T least(T a, T b) {
+  return a < b ? a : b;
+}
 
 /// Pixels from the result for `from` up to, not including, that for `to` have their centres between; one exactly on the rim
 /// may be missing.
-inline std::int32_t place(double at, double all) { return static_cast<std::int32_t>(least(all, most(0, at + 0.5))); }
+template <class T>
+inline std::int32_t place(T at, T all) {
+  return static_cast<std::int32_t>(least(all, most(T(0), at + T(0.5))));
+}
 
 /// `rows` of them from `row` on, by their place from the top of the rectangle; `width` of it.
-WIDE void ellipseSpans(const double (&v)[8], double left, double top, double width, int row, int rows, Spans& spans) {
-  const double x = v[0] - left, y = v[1] - top - row - 0.5, wide = v[2], each = 1 / v[3];
+/// In fp32, which moves the rim by less than 2^-19 of the ellipse's size: it is made so much smaller.
+WIDE void ellipseSpans(const double (&v)[8], double left, double top, float width, int row, int rows, Spans& spans) {
+  const double less = (v[2] + v[3]) * 0x1p-19;
+  const auto x = static_cast<float>(v[0] - left), y = static_cast<float>(v[1] - top - row - 0.5);
+  const auto wide = static_cast<float>(v[2] - less), each = static_cast<float>(1 / (v[3] - less));
   for (int of = 0; of < rows; of += eight)
     for (int i = of; i < of + eight; ++i) {
-      const double down = (i - y) * each, half = wide * std::sqrt(most(0, 1 - down * down));
-      spans.first[i] = static_cast<std::int16_t>(place(x - half, width));
-      spans.end[i] = static_cast<std::int16_t>(place(x + half, width));
+      const float down = (static_cast<float>(i) - y) * each, half = wide * std::sqrt(most(0.f, 1 - down * down));
+      spans.first[i] = place(x - half, width);
+      spans.end[i] = place(x + half, width);
     }
 }
 
@@ -56,8 +68,8 @@ WIDE void polygonSpans(const Edges& edges, int count, double width, int row, int
       }
     }
     for (int i = 0; i < eight; ++i) {
-      spans.first[of + i] = static_cast<std::int16_t>(place(from[i], width));
-      spans.end[of + i] = static_cast<std::int16_t>(place(to[i], width));
+      spans.first[of + i] = place(from[i], width);
+      spans.end[of + i] = place(to[i], width);
     }
   }
 }
@@ -67,7 +79,7 @@ WIDE void polygonSpans(const Edges& edges, int count, double width, int row, int
 WIDE void lower(DepthCode* to, std::size_t stride, int width, int rows, const Spans& spans, DepthCode depth) {
   constexpr Places lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   for (int y = 0; y < rows; ++y, to += stride) {
-    const std::int16_t first = spans.first[y], end = spans.end[y];
+    const auto first = static_cast<std::int16_t>(spans.first[y]), end = static_cast<std::int16_t>(spans.end[y]);
     // Narrow solids: the same number of vectors in each row.
     const int from = width <= 4 * lanes ? 0 : first / lanes * lanes, last = width <= 4 * lanes ? width : end;
     Places at = lane + static_cast<std::int16_t>(from);
@@ -152,11 +164,11 @@ void DepthBounds::add(const Footprint& f, const Cover& cover) {
     }
     top += 2 * cover.margin, bottom -= 2 * cover.margin;
   }
-  const int first = place(top - f.y0, height), end = place(bottom - f.y0, height);
+  const int first = place(top - f.y0, double(height)), end = place(bottom - f.y0, double(height));
   Spans spans;
   for (int row = first; row < end; row += together) {
     const int rows = std::min(end - row, together);
-    if (cover.corners == 0) ellipseSpans(cover.v, f.x0, f.y0, width, row, rows, spans);
+    if (cover.corners == 0) ellipseSpans(cover.v, f.x0, f.y0, static_cast<float>(width), row, rows, spans);
     else polygonSpans(edges, count, width, row, rows, spans);
     lower(depth_.data() + static_cast<std::size_t>(f.y0 + row) * stride_ + f.x0, stride_, static_cast<int>(width), rows,
           spans, f.hides);

@@ -87,8 +87,8 @@ inline __attribute__((always_inline)) bool holdsCentre(const double (&p)[2 * COR
   for (std::size_t k = 0; k < CORNERS; ++k) {
     const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
     const double along = (p[2 * next] - p[2 * k]) * sign, down = (p[2 * next + 1] - p[2 * k + 1]) * sign;
-    const double first = along * (y + 0.5 - p[2 * k + 1]) - down * (x + 0.5 - p[2 * k]) +
-                         margin * (std::abs(along) + std::abs(down));
+    const double first =
+        along * (y + 0.5 - p[2 * k + 1]) - down * (x + 0.5 - p[2 * k]) + margin * (std::abs(along) + std::abs(down));
 #pragma GCC unroll 9
     for (std::size_t i = 0; i < 9; ++i) {
       const double at = first + along * static_cast<double>(i / 3) - down * static_cast<double>(i % 3);
@@ -131,8 +131,8 @@ inline __attribute__((always_inline)) std::int32_t missedTiles(const double (&p)
     }
   }
   const bool few = (x1 - splitX < Footprints::tile) & (y1 - splitY < Footprints::tile);
-  const std::int32_t missed = (inside[0] < 0 ? 1 : 0) + (inside[1] < 0 ? 2 : 0) + (inside[2] < 0 ? 4 : 0) +
-                              (inside[3] < 0 ? 8 : 0);
+  const std::int32_t missed =
+      (inside[0] < 0 ? 1 : 0) + (inside[1] < 0 ? 2 : 0) + (inside[2] < 0 ? 4 : 0) + (inside[3] < 0 ? 8 : 0);
   return few ? missed : 0;
 }
 

@@ -13,15 +13,16 @@ ListBuilder::ListBuilder() {
 }
 ListBuilder::~ListBuilder() = default;
 
-void ListBuilder::collect(const Scene& scene, RealType type, bool eyeForms, const Silhouette& silhouette,
-                          const ListGrid& grid) {
+void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType type, bool eyeForms,
+                          const Silhouette& silhouette, const ListGrid& grid) {
   grid_ = grid, type_ = type, eyeForms_ = eyeForms;
-  const EyeFrames eye(eyeFrame(scene, eyeForms ? type : RealType::f64));
+  const EyeFrames eye(frame);
   const World& world = scene.world;
   const std::size_t solids = world.solids.size(), threads = solids < 256 ? 1 : parts_.size();
   const std::size_t pixels = static_cast<std::size_t>(grid.region.width) * static_cast<std::size_t>(grid.region.height);
   const bool many = silhouette.centresAlone() && solids > 1000 && solids > pixels / 64 && grid.region.width < (1 << 14);
-  const DepthScale scale(many ? static_cast<float>(eyeFrame(scene, RealType::f32).unit) : 1.f);
+  const bool hasUnit = eyeForms && type == RealType::f32;
+  const DepthScale scale(many ? static_cast<float>(hasUnit ? frame.unit : eyeFrame(scene, RealType::f32).unit) : 1.f);
   const auto footprints = [&] { return Footprints(silhouette, grid.region, eye.plain, type, scale); };
   Crowd crowd;
   if (many) {

@@ -20,8 +20,8 @@ namespace solidcast {
 /// Part of the image in tiles, and in wide tiles of `wide` x `wide` of them, for solids that would be in too many.
 struct ListGrid {
   static constexpr int tile = Footprints::tile;
-  Crop region;                    // in pixels of the whole image
-  int across = 0, down = 0;       // tiles; the planes' padding is covered as well
+  Crop region;               // in pixels of the whole image
+  int across = 0, down = 0;  // tiles; the planes' padding is covered as well
   int wide = 16;
   int wideAcross() const { return (across + wide - 1) / wide; }
   int wideDown() const { return (down + wide - 1) / wide; }
@@ -43,7 +43,9 @@ class ListBuilder {
 
   /// Which solids are seen where, and their records: forms for the camera's one eye, correct to 2^-3 of the type's
   /// rounding (docs/numerics.md), or the solids themselves from the camera's centre, for rays that are free.
-  void collect(const Scene& scene, RealType type, bool eyeForms, const Silhouette& silhouette, const ListGrid& grid);
+  /// `eye` is eyeFrame() of the scene, for forms of `type`, otherwise for f64.
+  void collect(const Scene& scene, const EyeFrame& eye, RealType type, bool eyeForms, const Silhouette& silhouette,
+               const ListGrid& grid);
 
   // What collect() found:
   std::array<bool, kindCount> kinds() const { return kinds_; }

@@ -111,7 +111,8 @@ Crowd::Crowd(std::span<const SolidEntry> solids, const Crop& region, Footprints&
 }
 
 DepthCode Crowd::depthOf(double layers) const {
-  const auto beyond = std::partition_point(some_.begin(), some_.end(), [&](const auto& s) { return s.second < layers; });
+  const auto beyond =
+      std::partition_point(some_.begin(), some_.end(), [&](const auto& s) { return s.second < layers; });
   return beyond == some_.end() ? DepthScale::none - 1 : beyond->first;
 }
 
@@ -139,7 +140,7 @@ ListLimits ListBuilder::Part::limits(ListLevel level) const {
 void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
                              Footprints& footprints, const Crowd& crowd) {
   constexpr double firstLayers = 3;
-  constexpr std::size_t fewest = 6000;  // what a note costs is little beside so many solids
+  constexpr std::size_t fewest = 12000;  // what a note costs is little beside so many solids
   const auto frontAt = [&](std::size_t at) { return crowd.depthOf(firstLayers * solids.size() / (at - from)); };
   std::size_t note = from + fewest;
   while (hiding_ && note - from < (to - from) / 16) note = from + 2 * (note - from);

@@ -69,7 +69,7 @@ struct ListBuilder::Part {
     std::uint32_t solid;
   };
   DepthBounds depths;
-  std::array<std::vector<Head>, 2> heads;                                  // of all that is seen
+  std::array<std::vector<Head>, 2> heads;  // of all that is seen
   // By solid: how many tiles are to have it, these tiles, its record.
   std::array<std::array<Arena, kindCount>, 2> found;
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> tiles;  // entries by tile; then where the next goes

@@ -54,8 +54,8 @@ void ListSearch::setScene(const Scene& scene) {
   builtRow_ = -1;
   Stopwatch flattening;
   silhouette_.emplace(scene, job_.job.width, job_.job.height, job_.job.samples);
-  const View view = viewRows(scene, eyeFrame(scene, program_.eye() ? program_.real : RealType::f64), job_.job.width,
-                             job_.job.height, job_.samples, program_.real);
+  eye_ = eyeFrame(scene, program_.eye() ? program_.real : RealType::f64);
+  const View view = viewRows(scene, eye_, job_.job.width, job_.job.height, job_.samples, program_.real);
   view_ = filledBuffer(job_.device, view.rows, gpu::BufferUse::uniform);
   if (program_.camera == 1) angles_ = filledBuffer(job_.device, view.angles, gpu::BufferUse::storage);
   viewRaws_ = static_cast<std::uint32_t>(view.raws);
@@ -76,7 +76,7 @@ void ListSearch::build(const PassTarget& target, const Band& band, int firstRow,
   grid.region = {job_.crop.x, job_.crop.y + band.firstRow + firstRow, band.width, std::min(rows, band.rows - firstRow)};
   grid.across = target.stride / ListGrid::tile, grid.down = rows / ListGrid::tile;
   while (std::int64_t{grid.wideAcross()} * grid.wideDown() > 256) grid.wide *= 2;
-  builder_.collect(*scene_, program_.real, program_.eye(), *silhouette_, grid);
+  builder_.collect(*scene_, eye_, program_.real, program_.eye(), *silhouette_, grid);
   for (std::size_t k = 0; k < kindCount; ++k) kinds_[k] = kinds_[k] || builder_.kinds()[k];
   const bool exact = program_.method == Method::exact;
   grazing_ = grazing_ || (exact && builder_.grazing());

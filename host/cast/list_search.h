@@ -26,6 +26,7 @@ class ListSearch : public PixelSearch {
   PassJob job_;
   const Scene* scene_;
   Program program_;
+  EyeFrame eye_;
   std::optional<Silhouette> silhouette_;
   ListBuilder builder_;
   std::array<bool, kindCount> kinds_{};  // that the pipeline has

@@ -15,15 +15,15 @@ Vec3<double> triple(const RecordBatch::Numbers& n, std::size_t first, std::size_
 }
 
 template <int ROWS>
-inline __attribute__((always_inline)) void store(const EyeRecord<double>& record, std::size_t i, RecordBatch::Rows& rows,
-                                                 Flags& poor, Flags& grazing) {
+inline __attribute__((always_inline)) void store(const EyeRecord<double>& record, std::size_t i,
+                                                 RecordBatch::Rows& rows, Flags& poor, Flags& grazing) {
 #pragma GCC unroll 20
   for (int k = 0; k < 4 * ROWS; ++k) rows[k][i] = static_cast<float>(record.row[k / 4][k % 4]);
   poor[i] = record.poor | (record.kind < 0), grazing[i] = record.grazing;
 }
 
-__attribute__((flatten)) WIDE void ofSpheres(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count, RecordBatch::Rows& rows,
-                    Flags& poor, Flags& grazing) {
+__attribute__((flatten)) WIDE void ofSpheres(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count,
+                                             RecordBatch::Rows& rows, Flags& poor, Flags& grazing) {
   for (std::size_t i = 0; i < count; ++i) {
     EyeRecord<double> record(RealType::f32);
     sphereForms(triple(n, 0, i), n.v[3][i], eye, n.index[i], record);
@@ -41,12 +41,13 @@ inline __attribute__((always_inline)) void spans(const Frame<double>& eye, const
     store<QUAD ? 5 : 4>(record, i, rows, poor, grazing);
   }
 }
-__attribute__((flatten)) WIDE void ofTriangles(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count, RecordBatch::Rows& rows,
-                      Flags& poor, Flags& grazing) {
+__attribute__((flatten)) WIDE void ofTriangles(const Frame<double>& eye, const RecordBatch::Numbers& n,
+                                               std::size_t count, RecordBatch::Rows& rows, Flags& poor,
+                                               Flags& grazing) {
   spans<false>(eye, n, count, rows, poor, grazing);
 }
-__attribute__((flatten)) WIDE void ofQuads(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count, RecordBatch::Rows& rows,
-                  Flags& poor, Flags& grazing) {
+__attribute__((flatten)) WIDE void ofQuads(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count,
+                                           RecordBatch::Rows& rows, Flags& poor, Flags& grazing) {
   spans<true>(eye, n, count, rows, poor, grazing);
 }
 

@@ -119,8 +119,7 @@ struct EyeRecord {
   }
   /// The same for a value that only scales s and the cosine, where 2^-32 relative does no harm.
   void scales(T value, T terms) {
-    if constexpr (!std::is_same_v<T, f128>)
-      poor |= !(magnitude(value) >= terms * T(0x1p-18));
+    if constexpr (!std::is_same_v<T, f128>) poor |= !(magnitude(value) >= terms * T(0x1p-18));
   }
   /// A flat solid whose plane passes the eye at `distance` and whose farthest point is at `farthest`: the cosine is at
   /// least their ratio, and s keeps 2^-28 relative where 7u <= 2^-28 of it.

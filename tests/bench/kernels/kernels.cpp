@@ -50,7 +50,7 @@ void lists(benchmark::State& state, const char* kind, RealType type) {
   std::vector<std::byte> rows, lanes;
   for (auto _ : state) {
     const Silhouette silhouette(scene, kWidth, kHeight, 1);
-    builder.collect(scene, type, true, silhouette, grid);
+    builder.collect(scene, eyeFrame(scene, type), type, true, silhouette, grid);
     const std::size_t laneCount = builder.listedTiles();
     rows.resize(std::max(rows.size(), builder.rows() * rowBytes(type)));
     lanes.resize(std::max(lanes.size(), laneCount * (1 + kindCount) * 16));
