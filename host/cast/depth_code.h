@@ -1,6 +1,8 @@
 // Depths along the camera's forward axis in 16 bits, for comparing which of two is certainly nearer: sixteen octaves around
 // a middle depth, 2^-12 apart, which is the float's own bits without the last eleven. A buffer of them stays in a core's
 // own cache, and one vector holds a row of a small solid.
+//
+// Both sides are rounded down: where the code of one depth is greater than that of another, so is the depth.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -17,15 +19,16 @@ class DepthScale {
 
   explicit DepthScale(float middle = 1) : least_(std::max(1 << 12, std::bit_cast<std::int32_t>(middle) - (8 << 23))) {}
 
-  /// Not beyond the depth, and never `none`.
-  std::int32_t down(float depth) const { return clamped((bits(depth) - least_) >> step, none - 1); }
-  /// Not before it.
-  std::int32_t up(float depth) const { return clamped((bits(depth) - least_ + ((1 << step) - 1)) >> step, none); }
+  /// Of where something begins: before `none`, however far.
+  std::int32_t begins(float depth) const { return within(code(depth), none - 1); }
+  /// Of where something ends: `none` where the codes do not reach.
+  std::int32_t ends(float depth) const { return within(code(depth), none); }
 
  private:
-  static constexpr int step = 11;
-  static std::int32_t bits(float depth) { return __builtin_bit_cast(std::int32_t, depth > 0 ? depth : 0.f); }
-  static std::int32_t clamped(std::int32_t code, std::int32_t most) { return code < 0 ? 0 : code > most ? most : code; }
+  std::int32_t code(float depth) const {
+    return (__builtin_bit_cast(std::int32_t, depth > 0 ? depth : 0.f) - least_) >> 11;
+  }
+  static std::int32_t within(std::int32_t code, std::int32_t most) { return code < 0 ? 0 : code > most ? most : code; }
 
   std::int32_t least_;
 };

@@ -29,8 +29,8 @@ inline void store(const View& v, const Slopes& s, bool plain, double nearest, do
   const double x0 = s.x0 * v.perX, x1 = s.x1 * v.perX, y0 = s.y0 * v.perY, y1 = s.y1 * v.perY;
   pixels(x0 + v.lowX - 2e-9 * std::abs(x0), x1 + v.highX + 2e-9 * std::abs(x1), v.lastX, r.x0[i], r.x1[i]);
   pixels(y0 + v.lowY - 2e-9 * std::abs(y0), y1 + v.highY + 2e-9 * std::abs(y1), v.lastY, r.y0[i], r.y1[i]);
-  r.nearest[i] = v.scale.down(static_cast<float>(nearest * (1 - 1e-6)));
-  const std::int32_t beyond = v.scale.up(static_cast<float>(hides * (1 + 1e-6)));
+  r.nearest[i] = v.scale.begins(static_cast<float>(nearest * (1 - 1e-6)));
+  const std::int32_t beyond = v.scale.ends(static_cast<float>(hides * (1 + 1e-6)));
   r.hides[i] = covers ? beyond : DepthScale::none;
   r.plain[i] = plain;
 }
@@ -275,7 +275,7 @@ Cover Footprints::cover(std::size_t i) const {
 /// Pixel i is seen at i + 0.5, so that [a, b] holds centres from ceil(a - 0.5) to floor(b - 0.5).
 Footprint Footprints::ask(const Shape& shape) const {
   const Rectangle r = std::visit([&](const auto& solid) { return silhouette_.rectangle(solid); }, shape);
-  const std::int32_t nearest = view_.scale.down(static_cast<float>(r.nearest * (1 - 1e-6)));
+  const std::int32_t nearest = view_.scale.begins(static_cast<float>(r.nearest * (1 - 1e-6)));
   Footprint f{0, 0, region_.width - 1, region_.height - 1, static_cast<DepthCode>(nearest), DepthScale::none, 0};
   if (r.everywhere) return f;
   // With NaN, max and min in this order are as far as possible.

@@ -19,7 +19,7 @@ namespace solidcast {
 /// Pixels of a region whose centres a solid can cover, first and last, counted from the region's corner.
 struct Footprint {
   std::int32_t x0, y0, x1, y1;
-  DepthCode nearest;  // Rectangle::nearest, not rounded up
+  DepthCode nearest;  // of Rectangle::nearest
   DepthCode hides;    // beyond it, what the solid covers is hidden; DepthScale::none: hides nothing
   // Of a solid in no more than 2x2 tiles of the region: which of them it is not seen in, bits by rows. 0 of others.
   std::uint32_t misses;

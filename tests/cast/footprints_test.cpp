@@ -1,0 +1,180 @@
+// What list building finds of many solids at a time (host/cast/footprints, depth_bounds, record_batch), each solid against
+// binary128: no pixel whose ray meets a solid is without it, nothing counts as covered that is not hit, and records are
+// those that are made one by one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "host/cast/depth_bounds.h"
+#include "host/cast/record_batch.h"
+#include "host/scene/random.h"
+
+namespace solidcast {
+namespace {
+
+constexpr int width = 72, height = 54;
+
+/// Solids of every size from far below a pixel to most of the picture, at all angles.
+std::vector<Shape> solids(int each) {
+  std::mt19937_64 bits(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto at = [&](double scale) {
+    return Triple{scale * uniform(bits), scale * uniform(bits), scale * uniform(bits)};
+  };
+  const auto plus = [](const Triple& a, const Triple& b) { return Triple{a[0] + b[0], a[1] + b[1], a[2] + b[2]}; };
+  std::vector<Shape> all;
+  for (int i = 0; i < each; ++i) {
+    const double size = std::exp2(uniform(bits) * 4 - 1.5);
+    const Triple middle = at(8);
+    all.push_back(Sphere{middle, size});
+    all.push_back(Triangle{plus(middle, at(size)), plus(middle, at(size)), plus(middle, at(size))});
+    all.push_back(Quad{middle, at(size), at(size)});
+    all.push_back(AABox{middle, plus(middle, at(size))});
+  }
+  return all;
+}
+
+struct Measured {
+  Scene scene = randomScene("sphere", 1, 1);  // for its camera
+  Silhouette silhouette{scene, width, height, 1};
+  EyeFrames eye{eyeFrame(scene, RealType::f32)};
+  DepthScale scale{30};
+  Crop region{0, 0, width, height};
+  PixelRays rays{scene, width, height, 1};
+  Footprints footprints{silhouette, region, eye.plain, RealType::f32, scale};
+
+  /// Depth along the camera's forward axis, which is -z.
+  std::optional<double> hit(const Shape& shape, int x, int y) const {
+    const RayQ ray = rays.ray(x, y);
+    const Cut c = std::visit([&](const auto& solid) { return cut(solid, ray); }, shape);
+    if (!c.hit || c.t <= 0) return std::nullopt;
+    return static_cast<double>(-c.t * ray.direction.z);
+  }
+};
+
+TEST(Footprints, HoldEveryPixelWhoseRayMeetsTheSolid) {
+  Measured m;
+  const std::vector<Shape> all = solids(80);
+  int hits = 0, missed = 0, without = 0;
+  for (const Shape& shape : all) {
+    const Shape* one = &shape;
+    m.footprints.find(std::span(&one, 1));
+    const Footprint& f = m.footprints[0];
+    without += !f.seen();
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        if (!m.hit(shape, x, y)) continue;
+        ++hits;
+        ASSERT_TRUE(x >= f.x0 && x <= f.x1 && y >= f.y0 && y <= f.y1) << shape.index() << " " << x << " " << y;
+        const int tile = (y / 4 - f.y0 / 4) * 2 + x / 4 - f.x0 / 4;
+        EXPECT_FALSE(f.misses != 0 && f.misses >> tile & 1) << shape.index() << " " << x << " " << y;
+      }
+    missed += f.seen() && f.misses != 0;
+  }
+  EXPECT_GT(hits, 3000);
+  EXPECT_GT(missed, 20);   // polygons beside a tile
+  EXPECT_GT(without, 20);  // between the centres, or beside the picture
+}
+
+TEST(DepthBounds, AreLoweredOnlyWhereTheSolidIsHitAndNoNearerThanThat) {
+  Measured m;
+  int hits = 0, lowered = 0;
+  for (const Shape& shape : solids(80)) {
+    const Shape* one = &shape;
+    m.footprints.find(std::span(&one, 1));
+    const Footprint f = m.footprints[0];
+    if (!f.seen() || f.hides == DepthScale::none) continue;
+    DepthBounds depths;
+    depths.start(m.region, width, (height + 3) / 4 * 4, 16);
+    depths.add(f, m.footprints.cover(0));
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const auto depth = m.hit(shape, x, y);
+        hits += depth.has_value();
+        // Something there that begins just beyond is hidden.
+        if (!depths.hides({x, y, x, y, static_cast<DepthCode>(f.hides + 1), DepthScale::none, 0})) continue;
+        ++lowered;
+        ASSERT_TRUE(depth) << shape.index() << " " << x << " " << y;
+        EXPECT_LE(m.scale.ends(static_cast<float>(*depth)), f.hides) << shape.index() << " " << x << " " << y;
+      }
+  }
+  EXPECT_GT(lowered, 2000);
+  EXPECT_GT(lowered, 0.9 * hits);
+}
+
+TEST(DepthScale, AGreaterCodeIsOfAGreaterDepth) {
+  std::mt19937_64 bits(5);
+  std::uniform_real_distribution<double> uniform(-140, 140);
+  const DepthScale scale(3);
+  for (int i = 0; i < 20000; ++i) {
+    const auto a = static_cast<float>(std::exp2(uniform(bits))), b = i % 2 ? std::nextafter(a, 0.f) : 3 * a / 2;
+    EXPECT_TRUE(scale.begins(a) <= scale.ends(b) || a > b) << a << " " << b;
+    EXPECT_TRUE(scale.begins(b) <= scale.ends(a) || b > a) << a << " " << b;
+  }
+  EXPECT_GT(scale.begins(3.001f), scale.ends(3.f));
+  EXPECT_LT(scale.begins(INFINITY), scale.ends(INFINITY));
+  EXPECT_EQ(scale.begins(-1), 0);
+}
+
+TEST(RecordBatch, HasTheVeryNumbersOfRecordsMadeOneByOne) {
+  const EyeFrames eye(eyeFrame(randomScene("sphere", 1, 1), RealType::f32));
+  std::vector<Shape> all = solids(300);
+  for (int i = 0; i < 40; ++i) {
+    const double near = std::exp2(-i);
+    all.push_back(Sphere{{0, 0, 29 - near}, 1});                                              // the eye near it
+    all.push_back(Triangle{{near, 0, 0}, {near, 1, 0}, {2 * near, 0, 20}});                   // seen edge-on
+    all.push_back(Quad{{0, 1 + near, 3}, {1, 0, 1e-3}, {-1, near, -1e-3}});                   // all but flat
+    all.push_back(Triangle{{near * 1e-9, 0, 0}, {near * 1e-9, 0, 20}, {near * 1e-9, 1, 1}});  // through the eye
+  }
+  std::map<int, RecordBatch> batches;
+  std::map<int, std::vector<std::uint32_t>> members;
+  int poor = 0, grazing = 0, same = 0, alone = 0;
+  const auto check = [&](int kind) {
+    RecordBatch& batch = batches.at(kind);
+    const std::size_t count = batch.pack(eye.plain);
+    ASSERT_EQ(count, members[kind].size());
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t index = members[kind][i];
+      std::visit(
+          [&](const auto& solid) {
+            EyeRecord<double> record(RealType::f32);
+            packEye(solid, eye.plain, double(index), record);
+            ASSERT_EQ(batch.poor(i), record.poor || record.kind < 0) << index;
+            poor += batch.poor(i);
+            if (batch.poor(i)) return;
+            ASSERT_EQ(record.kind, kind) << index;
+            EXPECT_EQ(batch.grazing(i), record.grazing) << index;
+            grazing += record.grazing;
+            std::vector<float> rows(4 * static_cast<std::size_t>(record.rows)), ones(rows.size());
+            batch.copy(i, reinterpret_cast<std::byte*>(rows.data()), rows.size());
+            for (std::size_t k = 0; k < ones.size(); ++k) ones[k] = static_cast<float>(record.row[k / 4][k % 4]);
+            EXPECT_EQ(rows, ones) << index;
+            ++same;
+          },
+          all[index]);
+    }
+    members[kind].clear();
+  };
+  for (std::uint32_t i = 0; i < all.size(); ++i)
+    std::visit(
+        [&](const auto& solid) {
+          if constexpr (requires(RecordBatch b) { b.add(solid, i, eye.plain); }) {
+            const int kind = kindNumber(solid);
+            RecordBatch& batch = batches.try_emplace(kind, kind).first->second;
+            if (!batch.add(solid, i, eye.plain)) return void(++alone);
+            members[kind].push_back(i);
+            if (batch.full()) check(kind);
+          }
+        },
+        all[i]);
+  for (const auto& [kind, of] : batches) check(kind);
+  EXPECT_GT(same, 900);
+  EXPECT_GT(poor, 5);
+  EXPECT_GT(grazing, 5);
+  EXPECT_GT(alone, 30);
+}
+
+}  // namespace
+}  // namespace solidcast
