@@ -34,10 +34,10 @@ string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${bytes}")
 file(WRITE ${SOURCE} "#include \"host/carried/carried.h\"
 
 namespace solidcast::gpu::carried {
-static const std::uint32_t words[] = {
+static const std::uint32_t ${NAME}_words[] = {
 ${words}
 };
 extern const std::span<const std::uint32_t> ${NAME};
-constinit const std::span<const std::uint32_t> ${NAME}{words};
+constinit const std::span<const std::uint32_t> ${NAME}{${NAME}_words};
 }  // namespace solidcast::gpu::carried
 ")

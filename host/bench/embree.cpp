@@ -11,10 +11,10 @@
 
 #include <array>
 #include <cmath>
-#include <glm/glm.hpp>
 
 #include "host/bench/embree_api.h"
 #include "host/bench/kernels.h"
+#include "host/bench/vec.h"
 
 namespace solidcast::bench {
 
@@ -36,10 +36,6 @@ void loadEmbree() {
 }
 
 namespace {
-
-using Vec = glm::dvec3;
-
-Vec vec(const Triple& v) { return {v[0], v[1], v[2]}; }
 
 /// Embree leaves out what reaches farther than 1.84e18. Unbounded solids must not: their box is this large.
 constexpr double kEndless = 1e18;

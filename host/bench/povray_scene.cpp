@@ -1,16 +1,13 @@
 // A scene in POV-Ray's language: the camera by its own vectors, which also settles the handedness; a white light of
 // diffuse 1 in the camera makes radiance the cosine, of both sides of a surface: what `--two-sided` shows.
 #include <cmath>
-#include <glm/glm.hpp>
 #include <sstream>
 
 #include "host/bench/processes.h"
+#include "host/bench/vec.h"
 
 namespace solidcast::bench {
 namespace {
-
-using Vec = glm::dvec3;
-Vec vec(const Triple& t) { return {t[0], t[1], t[2]}; }
 
 std::ostream& operator<<(std::ostream& out, const Vec& v) {
   return out << '<' << v.x + 0.0 << ',' << v.y + 0.0 << ',' << v.z + 0.0 << '>';  // no "-0"

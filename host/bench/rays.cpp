@@ -3,11 +3,12 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "host/bench/vec.h"
+
 namespace solidcast::bench {
 namespace {
 
 constexpr int padded(int n, int to) { return (n + to - 1) / to * to; }
-glm::dvec3 vec(const Triple& v) { return {v[0], v[1], v[2]}; }
 void store(float (&to)[3], glm::dvec3 v) {
   for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(v[i]);
 }

@@ -1,18 +1,14 @@
 // Records of the hand-written peer, calculated in fp64 and rounded once, and its run over all cores.
-#include <glm/glm.hpp>
 
 #include "host/bench/flush_denormals.h"
 #include "host/bench/kernels.h"
 #include "host/bench/peer.h"
+#include "host/bench/vec.h"
 #include "host/cast/workers.h"
 #include "host/error.h"
 
 namespace solidcast::bench {
 namespace {
-
-using Vec = glm::dvec3;
-
-Vec vec(const Triple& v) { return {v[0], v[1], v[2]}; }
 
 class Records {
  public:

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/carried/carried.h"
+#include "host/cast/pass.h"
 #include "host/cast/planes.h"
 #include "host/cast/stopwatch.h"
 #include "host/error.h"
@@ -23,8 +24,6 @@ constexpr std::uint32_t invocations = 64;
 constexpr std::uint32_t nothing = 0xffffffffu;
 constexpr std::uint32_t programShift = 22;  // user.glsl: endlessLoop
 constexpr std::size_t mostPrograms = 1 << 10;
-
-std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
 
 gpu::Buffer valuesBuffer(gpu::Device& device, const CustomCode& code) {
   return filledBuffer(device, std::as_bytes(std::span<const float>(customValues(code))), gpu::BufferUse::uniform);

@@ -11,7 +11,7 @@ namespace {
 
 // Branches on what differs from solid to solid are mispredicted half of the time, hence vectors and selections.
 constexpr int lanes = 16;
-using Line = DepthCode __attribute__((vector_size(2 * lanes)));
+using Codes = DepthCode __attribute__((vector_size(2 * lanes)));
 using Places = std::int16_t __attribute__((vector_size(2 * lanes)));
 
 /// Rows of a solid that are looked at together, by eights; the pixels of each that it covers, from its rectangle's left on.
@@ -84,9 +84,9 @@ WIDE void lower(DepthCode* to, std::size_t stride, int width, int rows, const Sp
     const int from = width <= 4 * lanes ? 0 : first / lanes * lanes, last = width <= 4 * lanes ? width : end;
     Places at = lane + static_cast<std::int16_t>(from);
     for (int x = from; x < last; x += lanes, at += lanes) {
-      Line now;
+      Codes now;
       std::memcpy(&now, to + x, sizeof now);
-      const Line other = depth | ~reinterpret_cast<Line>((at >= first) & (at < end));
+      const Codes other = depth | ~reinterpret_cast<Codes>((at >= first) & (at < end));
       now = now < other ? now : other;
       std::memcpy(to + x, &now, sizeof now);
     }
@@ -203,14 +203,14 @@ void DepthBounds::noteTiles() {
 bool DepthBounds::hides(const Footprint& f) const {
   if (f.x1 - f.x0 >= lanes || f.y1 - f.y0 >= lanes || *middle(f) >= f.nearest) return false;
   const DepthCode* at = depth_.data() + static_cast<std::size_t>(f.y0) * stride_ + f.x0;
-  Line deepest{};
+  Codes deepest{};
   for (int y = f.y0; y <= f.y1; ++y, at += stride_) {
-    Line now;
+    Codes now;
     std::memcpy(&now, at, sizeof now);
     deepest = deepest > now ? deepest : now;
   }
   constexpr Places lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  const Line seen = reinterpret_cast<Line>(lane <= static_cast<std::int16_t>(f.x1 - f.x0)) & (deepest >= f.nearest);
+  const Codes seen = reinterpret_cast<Codes>(lane <= static_cast<std::int16_t>(f.x1 - f.x0)) & (deepest >= f.nearest);
   std::uint64_t any[sizeof seen / 8];
   std::memcpy(any, &seen, sizeof seen);
   return !(any[0] | any[1] | any[2] | any[3]);

@@ -8,9 +8,6 @@
 namespace solidcast {
 namespace {
 
-using View = Footprints::View;
-constexpr std::size_t block = Footprints::block;
-
 struct Slopes {
   double x0, x1, y0, y1;
 };
@@ -24,8 +21,8 @@ inline void pixels(double from, double to, double last, std::int32_t& first, std
 }
 
 /// `hides`: the depth beyond which the solid hides what is behind, where `covers`.
-inline void store(const View& v, const Slopes& s, bool plain, double nearest, double hides, bool covers, std::size_t i,
-                  auto& r) {
+inline void store(const Footprints::View& v, const Slopes& s, bool plain, double nearest, double hides, bool covers,
+                  std::size_t i, auto& r) {
   const double x0 = s.x0 * v.perX, x1 = s.x1 * v.perX, y0 = s.y0 * v.perY, y1 = s.y1 * v.perY;
   pixels(x0 + v.lowX - 2e-9 * std::abs(x0), x1 + v.highX + 2e-9 * std::abs(x1), v.lastX, r.x0[i], r.x1[i]);
   pixels(y0 + v.lowY - 2e-9 * std::abs(y0), y1 + v.highY + 2e-9 * std::abs(y1), v.lastY, r.y0[i], r.y1[i]);
@@ -37,8 +34,8 @@ inline void store(const View& v, const Slopes& s, bool plain, double nearest, do
 
 /// Centres from the world's origin, and radii. True: some sphere is farther than 16 radii.
 /// A disc through the centre, parallel to the image, is a circle there: what it covers, less what rounding takes.
-WIDE bool ofSpheres(const View& view, Footprints::Spheres& b) {
-  const View v = view;  // nothing that is stored can change it
+WIDE bool ofSpheres(const Footprints::View& view, Footprints::Spheres& b) {
+  const Footprints::View v = view;  // nothing that is stored can change it
   std::int32_t far = 0;
   for (std::size_t i = 0, count = b.count; i < count; ++i) {
     const double x = b.v[0][i] - v.origin[0], y = b.v[1][i] - v.origin[1], z = b.v[2][i] - v.origin[2];
@@ -139,8 +136,8 @@ inline __attribute__((always_inline)) std::int32_t missedTiles(const double (&p)
 /// Corners from the eye. POLYGON: the first three tell the plane, and what hides by it is nowhere beyond the farthest
 /// corner, unless it is seen so flat that the shader's rounding can move it.
 template <std::size_t CORNERS, bool POLYGON>
-inline __attribute__((always_inline)) void corners(const View& view, auto& b) {
-  const View v = view;
+inline __attribute__((always_inline)) void corners(const Footprints::View& view, auto& b) {
+  const Footprints::View v = view;
   for (std::size_t i = 0, count = b.count; i < count; ++i) {
     const auto& p = b.v;
     Slopes s{1e300, -1e300, 1e300, -1e300};
@@ -180,9 +177,9 @@ inline __attribute__((always_inline)) void corners(const View& view, auto& b) {
     }
   }
 }
-WIDE void ofTriangles(const View& v, Footprints::Triangles& b) { corners<3, true>(v, b); }
-WIDE void ofQuads(const View& v, Footprints::Quads& b) { corners<4, true>(v, b); }
-WIDE void ofBoxes(const View& v, Footprints::Boxes& b) { corners<8, false>(v, b); }
+WIDE void ofTriangles(const Footprints::View& v, Footprints::Triangles& b) { corners<3, true>(v, b); }
+WIDE void ofQuads(const Footprints::View& v, Footprints::Quads& b) { corners<4, true>(v, b); }
+WIDE void ofBoxes(const Footprints::View& v, Footprints::Boxes& b) { corners<8, false>(v, b); }
 
 }  // namespace
 

@@ -27,8 +27,6 @@ struct PixelPush {
 };
 static_assert(sizeof(PixelPush) <= 128);
 
-std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
-
 }  // namespace
 
 GroupSearch::GroupSearch(const PassJob& job, const Scene& scene, const PlanChoice& choice)

@@ -19,8 +19,6 @@ constexpr std::uint32_t groupLanes = 16;  // lists.comp: local_size_x
 constexpr std::uint32_t mostEntries = 65000;
 constexpr std::size_t stateBytes = 40 * 16;  // lists.comp: State, by tile, at most
 
-std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
-
 /// What is taken for a buffer of so many bytes, so that it serves the next scene too.
 std::size_t withRoom(std::size_t bytes) { return std::max<std::size_t>(bytes + bytes / 8, 64) / 16 * 16; }
 

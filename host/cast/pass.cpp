@@ -16,8 +16,6 @@ std::uint32_t wordsOf(std::uint32_t wanted) {
   return words;
 }
 
-std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
-
 }  // namespace
 
 bool isGrey(const Scene& scene) {

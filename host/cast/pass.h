@@ -12,6 +12,9 @@
 
 namespace solidcast {
 
+/// A count or a coordinate, as the shaders take it.
+constexpr std::uint32_t u(int v) { return static_cast<std::uint32_t>(v); }
+
 /// Bits of pixels.comp's WANTED, in the order of the planes.
 enum Wanted : std::uint32_t { RGB8 = 1, RADIANCE = 2, DISTANCE = 4, SOLID = 8, NORMAL = 16, LOCAL = 32, POSITION = 64 };
 

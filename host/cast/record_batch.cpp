@@ -7,8 +7,7 @@
 namespace solidcast {
 namespace {
 
-constexpr std::size_t block = RecordBatch::block;
-using Flags = std::int32_t[block];
+using Flags = std::int32_t[RecordBatch::block];
 
 Vec3<double> triple(const RecordBatch::Numbers& n, std::size_t first, std::size_t i) {
   return {n.v[first][i], n.v[first + 1][i], n.v[first + 2][i]};
@@ -22,8 +21,9 @@ inline __attribute__((always_inline)) void store(const EyeRecord<double>& record
   poor[i] = record.poor | (record.kind < 0), grazing[i] = record.grazing;
 }
 
-__attribute__((flatten)) WIDE void ofSpheres(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count,
-                                             RecordBatch::Rows& rows, Flags& poor, Flags& grazing) {
+__attribute__((flatten)) WIDE void packSpheres(const Frame<double>& eye, const RecordBatch::Numbers& n,
+                                               std::size_t count, RecordBatch::Rows& rows, Flags& poor,
+                                               Flags& grazing) {
   for (std::size_t i = 0; i < count; ++i) {
     EyeRecord<double> record(RealType::f32);
     sphereForms(triple(n, 0, i), n.v[3][i], eye, n.index[i], record);
@@ -41,13 +41,13 @@ inline __attribute__((always_inline)) void spans(const Frame<double>& eye, const
     store<QUAD ? 5 : 4>(record, i, rows, poor, grazing);
   }
 }
-__attribute__((flatten)) WIDE void ofTriangles(const Frame<double>& eye, const RecordBatch::Numbers& n,
-                                               std::size_t count, RecordBatch::Rows& rows, Flags& poor,
-                                               Flags& grazing) {
+__attribute__((flatten)) WIDE void packTriangles(const Frame<double>& eye, const RecordBatch::Numbers& n,
+                                                 std::size_t count, RecordBatch::Rows& rows, Flags& poor,
+                                                 Flags& grazing) {
   spans<false>(eye, n, count, rows, poor, grazing);
 }
-__attribute__((flatten)) WIDE void ofQuads(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count,
-                                           RecordBatch::Rows& rows, Flags& poor, Flags& grazing) {
+__attribute__((flatten)) WIDE void packQuads(const Frame<double>& eye, const RecordBatch::Numbers& n, std::size_t count,
+                                             RecordBatch::Rows& rows, Flags& poor, Flags& grazing) {
   spans<true>(eye, n, count, rows, poor, grazing);
 }
 
@@ -69,7 +69,7 @@ bool RecordBatch::add(const Span<double>& span, std::uint32_t index) {
 }
 
 std::size_t RecordBatch::pack(const Frame<double>& eye) {
-  const auto of = kind_ == kinds::sphere ? ofSpheres : kind_ == kinds::triangle ? ofTriangles : ofQuads;
+  const auto of = kind_ == kinds::sphere ? packSpheres : kind_ == kinds::triangle ? packTriangles : packQuads;
   of(eye, numbers_, count_, row_, poor_, grazing_);
   return std::exchange(count_, 0);
 }

@@ -6,8 +6,7 @@
 namespace solidcast {
 namespace {
 
-constexpr std::size_t most = 4096;  // planes that are compared; with more of them ties are taken for granted
-enum Kind : std::uint32_t { plane, sphere, box, disc, triangle, quad, quadric };
+constexpr std::size_t mostPlanes = 4096;  // planes that are compared; with more of them ties are taken for granted
 
 /// A plane as m, s = m.d; what two solids' fp32 forms of one plane differ by is a few units in the last place.
 struct Side {
@@ -24,7 +23,7 @@ double distanceOf(const Side& a, const Side& b) {
 bool mayTie(const Records& records, const EyeFrame& eye) {
   const auto kindsThere = std::count_if(records.count.begin(), records.count.end(), [](auto n) { return n > 0; });
   if (kindsThere < 2) return false;
-  if (records.count[quadric] > 0 || records.solids() > most) return true;
+  if (records.count[kinds::quadric] > 0 || records.solids() > mostPlanes) return true;
   std::vector<Side> sides;
   auto add = [&](std::uint32_t kind, double x, double y, double z) {
     sides.push_back({kind, {x, y, z}, std::hypot(x, y, z)});
@@ -35,20 +34,20 @@ bool mayTie(const Records& records, const EyeFrame& eye) {
     std::memcpy(r.data(), records.bytes.data() + at * sizeof r, sizeof r);
     return r;
   };
-  for (std::uint32_t kind : {plane, disc, triangle, quad})
+  for (const int kind : {kinds::plane, kinds::disc, kinds::triangle, kinds::quad})
     for (std::uint32_t i = 0; i < records.count[kind]; ++i) {
       const auto m = row(kind, i, 0);
       add(kind, m[0], m[1], m[2]);
     }
-  for (std::uint32_t i = 0; i < records.count[box]; ++i) {
-    const bool inside = row(box, i, 1)[3] > 0;
-    const auto up = row(box, i, 0), low1 = row(box, i, 2), low2 = row(box, i, 3);
+  for (std::uint32_t i = 0; i < records.count[kinds::box]; ++i) {
+    const bool inside = row(kinds::box, i, 1)[3] > 0;
+    const auto up = row(kinds::box, i, 0), low1 = row(kinds::box, i, 2), low2 = row(kinds::box, i, 3);
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (const double reciprocal :
            {inside ? 0.0 : double(up[axis]), inside ? double(low1[axis]) : 0.0, inside ? double(low2[axis]) : 0.0}) {
         const int a = static_cast<int>(axis);
         if (reciprocal != 0)
-          add(box, double(eye.right[a]) * reciprocal, double(eye.upward[a]) * reciprocal,
+          add(kinds::box, double(eye.right[a]) * reciprocal, double(eye.upward[a]) * reciprocal,
               double(eye.backward[a]) * reciprocal);
       }
   }

@@ -17,7 +17,7 @@
 namespace solidcast::cli {
 namespace {
 
-constexpr char kFooter[] =
+constexpr char kBenchFooter[] =
     R"(All contestants cast the same rays, one turn each in every round, on all cores. A SCENE is a file, the name of a
 bundled scene (a_solids), or random:KIND:COUNT[:SEED] as generate makes them. Without --method: fast and exact.
   dispatch  casting and storing 8-bit colours (ours by the device's clock; peers: tracing)
@@ -120,7 +120,7 @@ void run(const CLI::App& verb, const Bench& options) {
 void addBench(CLI::App& app) {
   auto options = std::make_shared<Bench>();
   CLI::App* verb = app.add_subcommand("bench", "measure speed, beside other ray casters");
-  verb->footer(kFooter);
+  verb->footer(kBenchFooter);
   verb->add_option("SCENE", options->scenes, "scenes (default: the bundled ones)");
   verb->add_option("--against", options->against, "peers to measure beside: embree,simd,cpu,povray (default: none)")
       ->delimiter(',')

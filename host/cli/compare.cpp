@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kSceneShare = 0.0002;  // of the pixels, by default
 constexpr double kSceneLevel = 1;
 
-constexpr char kFooter[] =
+constexpr char kCompareFooter[] =
     R"(With two files (PNG, PFM, Radiance HDR, told apart by their content) the images are compared; no Vulkan is touched.
 With one scene, it is cast on the GPU (A) and by the CPU reference (B).
 A pixel differs when any of its channels differs by more than --max-level: levels of 1/255 for 8-bit images, the
@@ -250,7 +250,7 @@ void run(const CLI::App& verb, const Compare& compare) {
 void addCompare(CLI::App& app) {
   auto compare = std::make_shared<Compare>();
   CLI::App* verb = app.add_subcommand("compare", "compare two images, or the GPU with the CPU reference on a scene");
-  verb->footer(kFooter);
+  verb->footer(kCompareFooter);
   verb->add_option("INPUT", compare->inputs, "a scene file, or two image files")
       ->required()
       ->expected(1, 2)

@@ -11,7 +11,7 @@
 namespace solidcast::cli {
 namespace {
 
-constexpr char kFooter[] =
+constexpr char kGenerateFooter[] =
     R"(The solids fill a ball of radius 10 around zero, seen from (0, 0, 30). Same arguments, same bytes.
 
 Examples:
@@ -40,7 +40,7 @@ void generate(const Generate& options) {
 void addGenerate(CLI::App& app) {
   auto options = std::make_shared<Generate>();
   CLI::App* verb = app.add_subcommand("generate", "write a scene of random solids");
-  verb->footer(kFooter);
+  verb->footer(kGenerateFooter);
   verb->add_option("--kind", options->kind, "kind of the solids, or mixed")
       ->check(CLI::IsMember(randomKinds()))
       ->capture_default_str();

@@ -15,7 +15,7 @@
 namespace solidcast::cli {
 namespace {
 
-constexpr char kFooter[] = R"(Examples:
+constexpr char kMainFooter[] = R"(Examples:
   solidcast render scenes/a_solids.json -o a.png
   solidcast compare scenes/a_solids.json
   solidcast compare gpu.pfm cpu.pfm -o difference.png
@@ -97,7 +97,7 @@ int run(int argc, char** argv) {
   CLI::App app("Ray caster for exact solids on Vulkan compute, checked against a scalar CPU reference.", "solidcast");
   app.set_version_flag("--version", "solidcast " SOLIDCAST_VERSION);
   app.set_help_flag("-h,--help", "print this help and exit");
-  app.footer(kFooter);
+  app.footer(kMainFooter);
   app.require_subcommand(1);
   app.get_formatter()->column_width(36);
   addRender(app);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kBlock = 65536;  // rays that are read, cast and printed together
 
-constexpr char kFooter[] =
+constexpr char kQueryFooter[] =
     R"(Rays: one a line, "ox oy oz dx dy dz [tmax]", numbers decimal or hex float (0x1.8p+3), rounded to fp32; '#'
 starts a comment. A hit needs 0 < t < tmax; t counts in lengths of the direction. Output, one line a ray, in order:
   {"ray":0,"hit":true,"t":7.5,"solid":"ball","index":2,"normal":[x,y,z],"local":[x,y,z],"position":[x,y,z]}
@@ -41,7 +41,7 @@ struct Query {
   CastingOptions casting;
 };
 
-using Cast = std::function<void(std::span<const QueryRay>, std::span<QueryHit>)>;
+using CastRays = std::function<void(std::span<const QueryRay>, std::span<QueryHit>)>;
 
 /// Writes to standard output; false when its reader has gone away, so that there is nobody left to cast for.
 bool toStandardOutput(std::string_view text) {
@@ -57,7 +57,7 @@ bool toStandardOutput(std::string_view text) {
 
 /// The whole stream; `rays` holds the first `count` of it. `cast` is the GPU's or the reference's.
 void stream(const Query& query, const World& world, RayReader& reader, std::vector<QueryRay>& rays, std::size_t count,
-            OutputFile* file, const Cast& cast) {
+            OutputFile* file, const CastRays& cast) {
   std::vector<QueryHit> hits(rays.size());
   const HitFormatter formatter(world, query.hex);
   std::string text;
@@ -87,7 +87,7 @@ void run(const CLI::App& verb, const Query& query) {
   // The first block before the device, so that a bad ray is told at once.
   std::vector<QueryRay> rays(kBlock);
   const std::size_t count = reader.read(rays);
-  const auto streamWith = [&](const Cast& cast) { stream(query, scene.world, reader, rays, count, file, cast); };
+  const auto streamWith = [&](const CastRays& cast) { stream(query, scene.world, reader, rays, count, file, cast); };
   if (query.backend == Backend::cpu) {
     note(cpuName(query.casting.precision));
     streamWith([&](std::span<const QueryRay> some, std::span<QueryHit> hits) {
@@ -106,7 +106,7 @@ void run(const CLI::App& verb, const Query& query) {
 void addQuery(CLI::App& app) {
   auto query = std::make_shared<Query>();
   CLI::App* verb = app.add_subcommand("query", "cast any rays at a scene");
-  verb->footer(kFooter);
+  verb->footer(kQueryFooter);
   verb->add_option("SCENE", query->scene, "scene file (JSON) or mesh (.ply, .obj); - is standard input")->required();
   verb->add_option("--rays", query->rays, "file of rays; - is standard input")->required()->type_name("FILE|-");
   verb->add_option("-o,--output", query->output, "file for the hits; - is standard output (default -)")

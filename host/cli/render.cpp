@@ -21,7 +21,7 @@
 namespace solidcast::cli {
 namespace {
 
-constexpr char kFooter[] =
+constexpr char kRenderFooter[] =
     R"(Images by the file's ending: .png (8 bit, truncated, no gamma), .pfm (float32, for comparing), .hdr (Radiance).
 "-o -" writes a PNG to standard output. --aov writes further channels beside the image, out.pfm -> out.normal.pfm.
 An image appears under its name only when it is whole.
@@ -196,7 +196,7 @@ void run(const CLI::App& verb, Render render) {
 void addRender(CLI::App& app) {
   auto render = std::make_shared<Render>();
   CLI::App* verb = app.add_subcommand("render", "render a scene to an image");
-  verb->footer(kFooter);
+  verb->footer(kRenderFooter);
   verb->add_option("SCENE", render->scene, "scene file (JSON) or mesh (.ply, .obj); - is standard input")->required();
   verb->add_option("-o,--output", render->output,
                    "image file; - is standard output (default: the scene's name with .png, in the current folder)")

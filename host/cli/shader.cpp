@@ -21,7 +21,7 @@
 namespace solidcast::cli {
 namespace {
 
-constexpr char kFooter[] =
+constexpr char kShaderFooter[] =
     R"(glsl is not the source: it is the specialised SPIR-V turned back into GLSL by spirv-cross, which must be installed.
 The source is in the folder shaders. disassembly and spirv are the very words. stats is JSON: instructions by class,
 before and after specialisation, and what was left out. Several modules (a scene with users' own GLSL has more than
@@ -159,7 +159,7 @@ void run(const Shader& shader) {
 void addShader(CLI::App& app) {
   auto shader = std::make_shared<Shader>();
   CLI::App* verb = app.add_subcommand("shader", "write the shaders that the driver is given for a scene");
-  verb->footer(kFooter);
+  verb->footer(kShaderFooter);
   verb->add_option("SCENE", shader->scene, "scene file (JSON) or mesh (.ply, .obj); - is standard input")->required();
   verb->add_option("--emit", shader->emit, "in which form (default glsl)")
       ->check(CLI::IsMember({"glsl", "spirv", "disassembly", "stats"}))

@@ -17,7 +17,7 @@
 namespace solidcast::cli {
 namespace {
 
-constexpr char kFooter[] =
+constexpr char kStudyFooter[] =
     R"(Without SCENE, --solid or --catalogue: all solids, the catalogue and the scene of seven solids.
 Writes study.html (open it in a browser; it needs no network), study.csv and study.json into DIR. Ctrl-C ends the
 study early; the files then hold what was measured by then.
@@ -116,7 +116,7 @@ void run(const Options& options) {
 void addStudy(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("study", "measure error against run time and report it");
-  verb->footer(kFooter);
+  verb->footer(kStudyFooter);
   std::vector<std::string> kinds;
   for (const oracle::Kind kind : oracle::kKinds) kinds.emplace_back(oracle::nameOf(kind));
   auto* scene =

@@ -19,7 +19,7 @@
 namespace solidcast::cli {
 namespace {
 
-constexpr char kFooter[] =
+constexpr char kWatchFooter[] =
     R"(Renders whenever the scene, a mesh that it names, or, with --shaders, a shader or a file that one includes is saved.
 What cannot be read or compiled is said with file, line and source, and the last good image stays; the next save that
 is right replaces it. Ctrl-C ends the watch with exit code 0.
@@ -127,7 +127,7 @@ void run(const CLI::App& verb, Watch& options) {
 void addWatch(CLI::App& app) {
   auto options = std::make_shared<Watch>();
   CLI::App* verb = app.add_subcommand("watch", "render a scene again whenever it is edited");
-  verb->footer(kFooter);
+  verb->footer(kWatchFooter);
   verb->add_option("SCENE", options->scene, "scene file (JSON) or mesh (.ply, .obj)")->required();
   verb->add_option("-o,--output", options->output,
                    "image file (default: the scene's name with .png, in the current folder)")

@@ -43,9 +43,9 @@ struct Function {
   std::uint32_t id() const { return head[0].at(2); }
 };
 
-class Module {
+class ParsedModule {
  public:
-  explicit Module(std::span<const std::uint32_t> spirv) : header_(spirv.begin(), spirv.begin() + 5) {
+  explicit ParsedModule(std::span<const std::uint32_t> spirv) : header_(spirv.begin(), spirv.begin() + 5) {
     Function* function = nullptr;
     for (std::size_t i = 5; i < spirv.size();) {
       std::size_t length = spirv[i] >> 16;
@@ -338,7 +338,7 @@ class Module {
 
 std::vector<std::uint32_t> specialised(std::span<const std::uint32_t> spirv,
                                        const std::vector<std::pair<std::uint32_t, std::uint32_t>>& constants) {
-  Module module(spirv);
+  ParsedModule module(spirv);
   module.setConstants({constants.begin(), constants.end()});
   module.dropUnreachable();
   return module.words();

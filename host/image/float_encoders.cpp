@@ -47,9 +47,9 @@ class PfmEncoder final : public RowEncoder {
   std::vector<float> turned_;
 };
 
-using Rgbe = std::array<std::uint8_t, 4>;
+using RgbeBytes = std::array<std::uint8_t, 4>;
 
-Rgbe rgbe(const float* colour) {
+RgbeBytes rgbe(const float* colour) {
   std::array<float, 3> part;
   for (int i = 0; i < 3; ++i) part[i] = colour[i] > 0 ? std::min(colour[i], 0x1.fep126f) : 0;  // NaN becomes 0
   const float largest = std::max({part[0], part[1], part[2]});
@@ -57,7 +57,7 @@ Rgbe rgbe(const float* colour) {
   int exponent;
   std::frexp(largest, &exponent);
   if (std::nearbyint(std::ldexp(largest, 8 - exponent)) > 255) ++exponent;
-  Rgbe out;
+  RgbeBytes out;
   for (int i = 0; i < 3; ++i) out[i] = static_cast<std::uint8_t>(std::nearbyint(std::ldexp(part[i], 8 - exponent)));
   out[3] = static_cast<std::uint8_t>(exponent + 128);
   return out;
@@ -76,13 +76,13 @@ class HdrEncoder final : public RowEncoder {
   void rows(const float* values, int count) override {
     bytes_.clear();
     for (int row = 0; row < count; ++row) {
-      for (Rgbe& pixel : row_) {
+      for (RgbeBytes& pixel : row_) {
         pixel = rgbe(values);
         values += 3;
       }
       if (width_ >= 8 && width_ <= 32767) putRunLengths();
       else
-        for (const Rgbe& pixel : row_) bytes_.insert(bytes_.end(), pixel.begin(), pixel.end());
+        for (const RgbeBytes& pixel : row_) bytes_.insert(bytes_.end(), pixel.begin(), pixel.end());
     }
     file_.append(bytes_.data(), bytes_.size());
   }
@@ -121,7 +121,7 @@ class HdrEncoder final : public RowEncoder {
 
   OutputFile& file_;
   std::size_t width_;
-  std::vector<Rgbe> row_;
+  std::vector<RgbeBytes> row_;
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -79,16 +79,16 @@ View planet(const Subject&, Random& random) {
   return {eye, sum(eye, forward), 60};
 }
 
-struct Family {
+struct ImageFamily {
   const char* name;
   std::vector<Kind> kinds;
   Subject (*subject)(Kind, Random&);
   View (*view)(const Subject&, Random&);
 };
 
-const std::vector<Family>& families() {
+const std::vector<ImageFamily>& imageFamilies() {
   static const std::vector<Kind> all(std::begin(kKinds), std::end(kKinds));
-  static const std::vector<Family> list{
+  static const std::vector<ImageFamily> list{
       {"perspective", all, genericSubject, generic},
       {"narrow", all, genericSubject, narrow},
       {"wide", all, genericSubject, wide},
@@ -107,7 +107,7 @@ const std::vector<Family>& families() {
 const std::vector<std::string>& imageFamiliesOf(Kind kind) {
   static const auto lists = [] {
     std::map<Kind, std::vector<std::string>> result;
-    for (const Family& family : families()) {
+    for (const ImageFamily& family : imageFamilies()) {
       for (const Kind k : family.kinds) result[k].emplace_back(family.name);
     }
     return result;
@@ -116,8 +116,8 @@ const std::vector<std::string>& imageFamiliesOf(Kind kind) {
 }
 
 Scene makeImage(Kind kind, const std::string& family, int width, int height, std::uint64_t seed) {
-  const auto& list = families();
-  const auto found = std::find_if(list.begin(), list.end(), [&](const Family& f) { return family == f.name; });
+  const auto& list = imageFamilies();
+  const auto found = std::find_if(list.begin(), list.end(), [&](const ImageFamily& f) { return family == f.name; });
   if (found == list.end() || std::count(found->kinds.begin(), found->kinds.end(), kind) == 0) {
     throw std::invalid_argument(std::string(nameOf(kind)) + " has no image family '" + family + "'");
   }

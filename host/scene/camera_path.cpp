@@ -7,13 +7,11 @@
 #include <iterator>
 
 #include "host/error.h"
+#include "host/scene/glm_triple.h"
 #include "host/scene/read.h"
 
 namespace solidcast {
 namespace {
-
-glm::dvec3 vec(const Triple& t) { return {t[0], t[1], t[2]}; }
-Triple triple(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 struct Axes {
   glm::dvec3 center, forward, up;

@@ -6,8 +6,6 @@
 namespace solidcast {
 namespace {
 
-[[noreturn]] void refuse(const std::string& where, const std::string& text) { throw Fault{where, text}; }
-
 /// At most 60 bytes, not ending inside a UTF-8 character.
 std::string_view beginning(std::string_view text) {
   if (text.size() <= 60) return text;

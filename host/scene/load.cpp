@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30;
 constexpr std::size_t kMaxWarnings = 20;  // lines; the rest is counted
 
-[[noreturn]] void refuse(const std::string& line) { throw Error(Exit::usage, line); }
+[[noreturn]] void refuseFile(const std::string& line) { throw Error(Exit::usage, line); }
 
 std::string readAll(std::istream& in, const std::string& file) {
   std::string text;
@@ -26,9 +26,9 @@ std::string readAll(std::istream& in, const std::string& file) {
   while (in.read(block.data(), block.size()), in.gcount() > 0) {
     text.append(block, 0, in.gcount());
     if (text.size() > kMaxFileBytes)
-      refuse(file + ": the file is larger than " + std::to_string(kMaxFileBytes) + " bytes, expected at most that");
+      refuseFile(file + ": the file is larger than " + std::to_string(kMaxFileBytes) + " bytes, expected at most that");
   }
-  if (in.bad()) refuse(file + ": cannot be read, expected a readable scene file");
+  if (in.bad()) refuseFile(file + ": cannot be read, expected a readable scene file");
   return text;
 }
 
@@ -88,7 +88,7 @@ bool isNonFinite(std::string word) {
   const auto line = 1 + std::count(begin, end, '\n');
   const auto column =
       1 + (end - std::find(std::make_reverse_iterator(end), std::make_reverse_iterator(begin), '\n').base());
-  refuse(file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + reason);
+  refuseFile(file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + reason);
 }
 
 /// The place of a fault; a way through a thousand groups keeps its beginning and end.
@@ -103,7 +103,7 @@ Scene meshScene(const std::string& file, std::vector<std::string>& warnings) {
     Scene scene = sceneOfMesh(file, found);
     for (const Fault& fault : found) warnings.push_back(fault.text);
     return scene;
-  } catch (const Fault& fault) { refuse(fault.text); }
+  } catch (const Fault& fault) { refuseFile(fault.text); }
 }
 
 }  // namespace
@@ -116,7 +116,7 @@ Scene parseScene(const std::string& text, const std::string& file, std::vector<s
   SceneBuilder builder(scene, found, files);
   try {
     if (!Json::sax_parse(text, &builder, Json::input_format_t::json, true, true)) refuseSyntax(builder, text, file);
-  } catch (const Fault& fault) { refuse(file + ": " + place(fault.where) + ": " + fault.text); }
+  } catch (const Fault& fault) { refuseFile(file + ": " + place(fault.where) + ": " + fault.text); }
   for (std::size_t i = 0; i < std::min(found.size(), kMaxWarnings); ++i)
     warnings.push_back(file + ": " + place(found[i].where) + ": " + found[i].text);
   if (found.size() > kMaxWarnings)
@@ -128,11 +128,12 @@ Scene loadScene(const std::string& file, std::vector<std::string>& warnings, std
   if (file == "-") return parseScene(readAll(std::cin, "standard input"), "standard input", warnings);
   if (files != nullptr) files->push_back(file);
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) refuse(file + ": is a folder, expected a scene file");
+  if (std::filesystem::is_directory(file, ignored)) refuseFile(file + ": is a folder, expected a scene file");
   if (isMeshFile(file)) return meshScene(file, warnings);
   errno = 0;
   std::ifstream in(file, std::ios::binary);
-  if (!in) refuse(file + ": " + (errno == ENOENT ? "no such file" : std::strerror(errno)) + ", expected a scene file");
+  if (!in)
+    refuseFile(file + ": " + (errno == ENOENT ? "no such file" : std::strerror(errno)) + ", expected a scene file");
   return parseScene(readAll(in, file), file, warnings, files);
 }
 

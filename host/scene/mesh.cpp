@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 30;
+constexpr std::uintmax_t kMaxMeshBytes = std::uintmax_t{1} << 30;
 
 /// Of a file without surprises: no folder, no device, no pipe.
 std::string readRegularFile(const std::string& file) {
@@ -31,8 +31,8 @@ std::string readRegularFile(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) refuse(std::string(std::strerror(errno)) + ", expected a mesh file that can be read");
   const std::uintmax_t size = fs::file_size(file, error);
-  if (error || size > kMaxFileBytes)
-    refuse("the file is larger than " + std::to_string(kMaxFileBytes) + " bytes, expected at most that");
+  if (error || size > kMaxMeshBytes)
+    refuse("the file is larger than " + std::to_string(kMaxMeshBytes) + " bytes, expected at most that");
   std::string text(size, '\0');
   in.read(text.data(), static_cast<std::streamsize>(size));
   if (static_cast<std::uintmax_t>(in.gcount()) != size) refuse("cannot be read, expected a readable mesh file");

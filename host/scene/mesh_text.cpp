@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "host/scene/fields.h"
+#include "host/scene/triple.h"
 
 namespace solidcast {
 namespace {
@@ -16,8 +17,6 @@ Triple edgeCross(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   const auto component = [&](int i, int j) { return (q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i]); };
   return {component(1, 2), component(2, 0), component(0, 1)};
 }
-
-double dot(const Triple& a, const Triple& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 #include "host/scene/fields.h"
 #include "host/scene/quadric_forms.h"
 #include "host/scene/rules.h"
+#include "host/scene/triple.h"
 
 namespace solidcast {
 namespace {
@@ -19,12 +20,6 @@ constexpr double kCloudRadius = 10;
 double shorten(double x) { return std::round(x * 1e6) / 1e6; }
 Triple shorten(const Triple& v) { return {shorten(v[0]), shorten(v[1]), shorten(v[2])}; }
 
-Triple scaled(const Triple& v, double s) { return {v[0] * s, v[1] * s, v[2] * s}; }
-Triple plus(const Triple& a, const Triple& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-double dot(const Triple& a, const Triple& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Triple cross(const Triple& a, const Triple& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 Triple unit(const Triple& v) { return scaled(v, 1 / std::sqrt(dot(v, v))); }
 
 class Maker {

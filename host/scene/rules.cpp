@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/scene/exact.h"
+#include "host/scene/triple.h"
 
 namespace solidcast {
 namespace {
@@ -17,13 +18,9 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& text) { throw Fault{where, text}; }
-
 void checkTriple(const Triple& triple, const std::string& where) {
   for (int i = 0; i < 3; ++i) checkNumber(triple[i], where + numbered("/", i));
 }
-
-Triple minus(const Triple& a, const Triple& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 double length(const Triple& v) { return std::hypot(v[0], v[1], v[2]); }
 

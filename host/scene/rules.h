@@ -21,6 +21,8 @@ struct Fault {
   std::string text;   // what is wrong, expected what
 };
 
+[[noreturn]] inline void refuse(const std::string& where, const std::string& text) { throw Fault{where, text}; }
+
 /// NaN, infinities and numbers beyond fp32 are refused.
 void checkNumber(double value, const std::string& where);
 void checkPositive(double value, const std::string& where);

@@ -1,19 +1,12 @@
 #include "host/scene/theory.h"
 
 #include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
 
 #include "host/error.h"
 #include "host/scene/exact.h"
+#include "host/scene/glm_triple.h"
 
 namespace solidcast {
-namespace {
-
-glm::dvec3 vec(const Triple& t) { return {t[0], t[1], t[2]}; }
-Triple triple(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
-}  // namespace
-
 InfinitePlane planeFromEquation(double a, double b, double c, double d) {
   const Triple normal = {a, b, c};
   if (isZero(normal)) throw Error(Exit::usage, "plane: A, B and C are zero, expected a normal");

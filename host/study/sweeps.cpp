@@ -107,7 +107,7 @@ Target narrowQuad(double angle, Random& random) {
 Target movedBox(double offset, Random& random) {
   const Triple c = scaled(offset, random.direction());
   const Triple half{random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1)};
-  return {AABox{difference(c, half), sum(c, half)},
+  return {AABox{oracle::difference(c, half), sum(c, half)},
           [=](Random& r) { return aimed(sum(c, scaled(r.uniform(2, 5), r.direction())), sum(c, r.inCube(1))); }};
 }
 

@@ -9,10 +9,10 @@
 namespace solidcast {
 namespace {
 
-std::string kindLabel(const testing::TestParamInfo<oracle::Kind>& info) { return oracle::nameOf(info.param); }
+std::string nameOfFamily(const testing::TestParamInfo<oracle::Kind>& info) { return oracle::nameOf(info.param); }
 
 class ExactRays : public OnDevice, public testing::WithParamInterface<oracle::Kind> {};
-INSTANTIATE_TEST_SUITE_P(, ExactRays, testing::ValuesIn(oracle::kKinds), kindLabel);
+INSTANTIATE_TEST_SUITE_P(, ExactRays, testing::ValuesIn(oracle::kKinds), nameOfFamily);
 
 TEST_P(ExactRays, OneSolid) {
   for (const std::string& family : oracle::familiesOf(GetParam())) {
@@ -40,7 +40,7 @@ TEST_P(ExactRays, WithoutFp64) {
 }
 
 class ExactImages : public OnDevice, public testing::WithParamInterface<oracle::Kind> {};
-INSTANTIATE_TEST_SUITE_P(, ExactImages, testing::ValuesIn(oracle::kKinds), kindLabel);
+INSTANTIATE_TEST_SUITE_P(, ExactImages, testing::ValuesIn(oracle::kKinds), nameOfFamily);
 
 TEST_P(ExactImages, OfEveryFamily) {
   for (const Arithmetic arithmetic : {Arithmetic::fp64, Arithmetic::df32}) {

@@ -11,12 +11,12 @@ namespace {
 
 class GlslTrapsTest : public Test {};
 
-constexpr std::size_t cases = 100'000;
+constexpr std::size_t trapCases = 100'000;
 
 template <class Real>
 std::vector<Real> operands(std::uint64_t seed, int range) {
   Operands source(seed);
-  std::vector<Real> values(cases);
+  std::vector<Real> values(trapCases);
   for (Real& v : values) v = source.real<Real>(range);
   return values;
 }
@@ -60,14 +60,14 @@ TEST_F(GlslTrapsTest, FmaIsFusedOrTwoRoundingsAndTheReportSaysWhich) {
              "float f(float a, float b, float c)");
   const std::vector<float> got = f(a, b, c).result().as<float>();
   std::size_t fused = 0, apart = 0, neither = 0, telling = 0;
-  for (std::size_t i = 0; i < cases; ++i) {
+  for (std::size_t i = 0; i < trapCases; ++i) {
     volatile float product = a[i] * b[i];
     const float two = product + c[i], one = std::fmaf(a[i], b[i], c[i]);
     if (one == two) continue;
     ++telling;
     fused += got[i] == one, apart += got[i] == two, neither += got[i] != one && got[i] != two;
   }
-  EXPECT_GT(telling, cases / 100);
+  EXPECT_GT(telling, trapCases / 100);
   EXPECT_EQ(neither, 0u);
   RecordProperty("fma", apart == telling ? "two roundings" : fused == telling ? "fused" : "mixed");
   if (device().info().name.find("llvmpipe") != std::string::npos) { EXPECT_EQ(apart, telling); }

@@ -9,6 +9,7 @@
 #include "host/oracle/families.h"
 #include "host/oracle/oracle.h"
 #include "reference_cpu/reference.h"
+#include "tests/oracle/helpers.h"
 
 namespace solidcast::oracle {
 namespace {
@@ -43,8 +44,6 @@ std::vector<Parameter> scalableFamilies() {
 }
 class ScalableFamilies : public Families {};
 INSTANTIATE_TEST_SUITE_P(, ScalableFamilies, testing::ValuesIn(scalableFamilies()), label);
-
-double relative(Real a, Real b) { return a == b ? 0 : static_cast<double>(fabsq(a - b) / fmaxq(fabsq(a), fabsq(b))); }
 
 double distance(const Real3& a, const Real3& b) {
   Real worst = 0;
@@ -200,15 +199,6 @@ TEST(Equivalents, NegatedQuadricKeepsTAndTurnsTheNormal) {
       ASSERT_LE(std::fmin(distance(a.normal, turned), same), 1e-32) << family;
     }
   }
-}
-
-World worldOf(const std::vector<Shape>& shapes) {
-  World world;
-  for (const Shape& shape : shapes) {
-    world.groups[0].members.push_back({false, static_cast<std::uint32_t>(world.solids.size())});
-    world.solids.push_back({"", shape, 0});
-  }
-  return world;
 }
 
 // Solids written in other solids, over families whose numbers are integers so that the translation is exact.

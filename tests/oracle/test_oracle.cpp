@@ -11,6 +11,7 @@
 #include "host/oracle/oracle.h"
 #include "host/oracle/random.h"
 #include "reference_cpu/reference.h"
+#include "tests/oracle/helpers.h"
 
 namespace solidcast::oracle {
 namespace {
@@ -19,21 +20,10 @@ Truth shoot(const Shape& shape, const QueryRay& ray, Effort effort = Effort::eno
   return intersect(shape, exactRay(ray), effort);
 }
 
-double relative(Real a, Real b) { return a == b ? 0 : static_cast<double>(fabsq(a - b) / fmaxq(fabsq(a), fabsq(b))); }
-
 void expectNormal(const Truth& truth, double x, double y, double z) {
   EXPECT_NEAR(static_cast<double>(truth.normal[0]), x, 1e-12);
   EXPECT_NEAR(static_cast<double>(truth.normal[1]), y, 1e-12);
   EXPECT_NEAR(static_cast<double>(truth.normal[2]), z, 1e-12);
-}
-
-World worldOf(const std::vector<Shape>& shapes) {
-  World world;
-  for (const Shape& shape : shapes) {
-    world.groups[0].members.push_back({false, static_cast<std::uint32_t>(world.solids.size())});
-    world.solids.push_back({"", shape, 0});
-  }
-  return world;
 }
 
 const Sphere kUnit{{0, 0, 0}, 1};
