@@ -19,13 +19,13 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
   const EyeFrames eye(frame);
   const World& world = scene.world;
   const std::size_t solids = world.solids.size(), threads = solids < 256 ? 1 : parts_.size();
-  const std::size_t pixels = static_cast<std::size_t>(grid.region.width) * static_cast<std::size_t>(grid.region.height);
-  const bool many = silhouette.centresAlone() && solids > 1000 && solids > pixels / 64 && grid.region.width < (1 << 14);
+  const bool canHide = silhouette.centresAlone() && solids > 64 && grid.region.width < (1 << 14);
   const bool hasUnit = eyeForms && type == RealType::f32;
-  const DepthScale scale(many ? static_cast<float>(hasUnit ? frame.unit : eyeFrame(scene, RealType::f32).unit) : 1.f);
+  const DepthScale scale(canHide ? static_cast<float>(hasUnit ? frame.unit : eyeFrame(scene, RealType::f32).unit)
+                                 : 1.f);
   const auto footprints = [&] { return Footprints(silhouette, grid.region, eye.plain, type, scale); };
   Crowd crowd;
-  if (many) {
+  if (canHide) {
     auto sample = footprints();
     crowd = Crowd(world.solids, grid.region, sample);
   }
