@@ -27,7 +27,7 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
   Crowd crowd;
   if (canHide) {
     auto sample = footprints();
-    crowd = Crowd(world.solids, grid.region, sample);
+    crowd = Crowd(world.solids, grid.region, type, sample);
   }
   const bool hiding = crowd.worthLooking();
   std::vector<DepthBounds*> depths;

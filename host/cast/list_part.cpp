@@ -88,7 +88,7 @@ void writeRows(std::span<const std::byte> from, std::uint32_t rowCount, std::byt
 
 std::uint32_t rowsOf(std::size_t kind, bool eyeForms) { return rowsOfKind[kind][eyeForms]; }
 
-Crowd::Crowd(std::span<const SolidEntry> solids, const Crop& region, Footprints& footprints) {
+Crowd::Crowd(std::span<const SolidEntry> solids, const Crop& region, RealType type, Footprints& footprints) {
   const std::size_t step = solids.size() / 256 + 1, looked = (solids.size() + step - 1) / step;
   const double share = 1.0 / looked * solids.size() / region.width / region.height;
   std::array<const Shape*, Footprints::block> shapes;
@@ -101,7 +101,7 @@ Crowd::Crowd(std::span<const SolidEntry> solids, const Crop& region, Footprints&
       if (!f.seen() || f.hides == DepthScale::none) continue;
       const double layers = (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1) * share;
       some_.push_back({f.hides, layers});
-      worth_ += layers / (footprints.cover(k).corners == 0 ? 3 : 10);
+      worth_ += layers / (footprints.cover(k).corners == 0 ? 3 : type == RealType::f32 ? 10 : 5);
     }
     count = 0;
   }

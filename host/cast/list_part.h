@@ -28,10 +28,11 @@ struct ListLimits {
 class Crowd {
  public:
   Crowd() = default;
-  Crowd(std::span<const SolidEntry> solids, const Crop& region, Footprints& footprints);
+  Crowd(std::span<const SolidEntry> solids, const Crop& region, RealType type, Footprints& footprints);
 
   /// Looking for what is hidden costs a pass over the pixels and, by solid, a few rows of them: it pays from some 3 layers
-  /// of spheres on, 10 of polygons (each covers half of its rectangle and is drawn by its edges).
+  /// of spheres on, 10 of polygons (each covers half of its rectangle and is drawn by its edges), 5 where a polygon's record
+  /// takes extended precision.
   bool worthLooking() const { return worth_ > 1; }
   /// The depth that so many layers reach to.
   DepthCode depthOf(double layers) const;
