@@ -65,25 +65,39 @@ WIDE bool ofSpheres(const Footprints::View& view, Footprints::Spheres& b) {
   return far;
 }
 
-/// Whether some centre of the 3x3 pixels from (x, y) on lies in a polygon, or nearer to it than the margin: many triangles
-/// of a fine mesh hold none. `p`: the corners around, in pixels.
+/// Edges of a polygon, around so that its inner side has along dy - down dx >= 0, dx and dy from the edge's corner. `p`: the
+/// corners in pixels.
 template <std::size_t CORNERS>
-inline __attribute__((always_inline)) bool holdsCentre(const double (&p)[2 * CORNERS], double x, double y,
-                                                       double margin) {
+struct Sides {
+  double along[CORNERS], down[CORNERS];
+
+  explicit Sides(const double (&p)[2 * CORNERS]) {
+    double turn = 0;
+#pragma GCC unroll 9
+    for (std::size_t k = 0; k < CORNERS; ++k) {
+      const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
+      turn += p[2 * k] * p[2 * next + 1] - p[2 * next] * p[2 * k + 1];
+    }
+    const double sign = turn < 0 ? -1 : 1;
+#pragma GCC unroll 9
+    for (std::size_t k = 0; k < CORNERS; ++k) {
+      const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
+      along[k] = (p[2 * next] - p[2 * k]) * sign, down[k] = (p[2 * next + 1] - p[2 * k + 1]) * sign;
+    }
+  }
+};
+
+/// Whether some centre of the 3x3 pixels from (x, y) on lies in a polygon, or nearer to it than the margin: many triangles
+/// of a fine mesh hold none.
+template <std::size_t CORNERS>
+inline __attribute__((always_inline)) bool holdsCentre(const double (&p)[2 * CORNERS], const Sides<CORNERS>& sides,
+                                                       double x, double y, double margin) {
   double inside[9];
 #pragma GCC unroll 9
   for (double& of : inside) of = 1;
-  double turn = 0;
 #pragma GCC unroll 9
   for (std::size_t k = 0; k < CORNERS; ++k) {
-    const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
-    turn += p[2 * k] * p[2 * next + 1] - p[2 * next] * p[2 * k + 1];
-  }
-  const double sign = turn < 0 ? -1 : 1;
-#pragma GCC unroll 9
-  for (std::size_t k = 0; k < CORNERS; ++k) {
-    const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
-    const double along = (p[2 * next] - p[2 * k]) * sign, down = (p[2 * next + 1] - p[2 * k + 1]) * sign;
+    const double along = sides.along[k], down = sides.down[k];
     const double first =
         along * (y + 0.5 - p[2 * k + 1]) - down * (x + 0.5 - p[2 * k]) + margin * (std::abs(along) + std::abs(down));
 #pragma GCC unroll 9
@@ -99,27 +113,20 @@ inline __attribute__((always_inline)) bool holdsCentre(const double (&p)[2 * COR
 }
 
 /// Footprint::misses of a polygon: an edge has all centres of the tile's part of the rectangle on its outer side, and not
-/// nearer than the margin. `p`: the corners around, in pixels.
+/// nearer than the margin.
 template <std::size_t CORNERS>
-inline __attribute__((always_inline)) std::int32_t missedTiles(const double (&p)[2 * CORNERS], std::int32_t x0,
+inline __attribute__((always_inline)) std::int32_t missedTiles(const double (&p)[2 * CORNERS],
+                                                               const Sides<CORNERS>& sides, std::int32_t x0,
                                                                std::int32_t y0, std::int32_t x1, std::int32_t y1,
                                                                double margin) {
   constexpr std::int32_t last = Footprints::tile - 1;
   const std::int32_t splitX = (x0 | last) + 1, splitY = (y0 | last) + 1;  // where the second tiles begin
   const double left[2] = {x0 + 0.5, splitX + 0.5}, right[2] = {(x1 < splitX ? x1 : splitX - 1) + 0.5, x1 + 0.5};
   const double top[2] = {y0 + 0.5, splitY + 0.5}, bottom[2] = {(y1 < splitY ? y1 : splitY - 1) + 0.5, y1 + 0.5};
-  double turn = 0, inside[4] = {1, 1, 1, 1};
+  double inside[4] = {1, 1, 1, 1};
 #pragma GCC unroll 9
   for (std::size_t k = 0; k < CORNERS; ++k) {
-    const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
-    turn += p[2 * k] * p[2 * next + 1] - p[2 * next] * p[2 * k + 1];
-  }
-  const double sign = turn < 0 ? -1 : 1;
-#pragma GCC unroll 9
-  for (std::size_t k = 0; k < CORNERS; ++k) {
-    const std::size_t next = k + 1 == CORNERS ? 0 : k + 1;
-    const double along = (p[2 * next] - p[2 * k]) * sign, down = (p[2 * next + 1] - p[2 * k + 1]) * sign;
-    const double near = margin * (std::abs(along) + std::abs(down));
+    const double along = sides.along[k], down = sides.down[k], near = margin * (std::abs(along) + std::abs(down));
 #pragma GCC unroll 9
     for (std::size_t i = 0; i < 4; ++i) {
       const double x = down > 0 ? left[i % 2] : right[i % 2], y = along > 0 ? bottom[i / 2] : top[i / 2];
@@ -170,9 +177,10 @@ inline __attribute__((always_inline)) void corners(const Footprints::View& view,
     }
     store(v, s, front, nearest, farthest * (1 + 0x1p-12), covers, i, b);
     if constexpr (POLYGON) {
+      const Sides<CORNERS> sides(around);
       const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
-      b.misses[i] = missedTiles<CORNERS>(around, x0, y0, x1, y1, v.edges);
-      const bool held = holdsCentre<CORNERS>(around, x0, y0, v.edges);
+      b.misses[i] = missedTiles<CORNERS>(around, sides, x0, y0, x1, y1, v.edges);
+      const bool held = holdsCentre<CORNERS>(around, sides, x0, y0, v.edges);
       b.x1[i] = (x1 - x0 < 3) & (y1 - y0 < 3) & !held ? -1 : x1;
     }
   }
