@@ -14,10 +14,18 @@ constexpr int lanes = 16;
 using Codes = DepthCode __attribute__((vector_size(2 * lanes)));
 using Places = std::int16_t __attribute__((vector_size(2 * lanes)));
 
-/// Rows of a solid that are looked at together, by eights; the pixels of each that it covers, from its rectangle's left on.
-constexpr int together = 32, eight = 8;
+/// Rows of a solid that are looked at together; the pixels of each that it covers, from its rectangle's left on.
+constexpr int eight = 8;
 struct Spans {
-  alignas(64) std::int32_t first[together], end[together];
+  alignas(32) std::int32_t first[eight], end[eight];
+};
+
+/// What a solid lowers: `to` is its rectangle's first pixel.
+struct Area {
+  DepthCode* to;
+  std::ptrdiff_t stride;
+  int width, height;
+  DepthCode depth;
 };
 
 template <class T>
@@ -36,65 +44,78 @@ inline std::int32_t place(T at, T all) {
   return static_cast<std::int32_t>(least(all, most(T(0), at + T(0.5))));
 }
 
-/// `rows` of them from `row` on, by their place from the top of the rectangle; `width` of it.
-/// In fp32, which moves the rim by less than 2^-19 of the ellipse's size: it is made so much smaller.
-WIDE void ellipseSpans(const double (&v)[8], double left, double top, float width, int row, int rows, Spans& spans) {
-  const double less = (v[2] + v[3]) * 0x1p-19;
-  const auto x = static_cast<float>(v[0] - left), y = static_cast<float>(v[1] - top - row - 0.5);
-  const auto wide = static_cast<float>(v[2] - less), each = static_cast<float>(1 / (v[3] - less));
-  for (int of = 0; of < rows; of += eight)
-    for (int i = of; i < of + eight; ++i) {
-      const float down = (static_cast<float>(i) - y) * each, half = wide * std::sqrt(most(0.f, 1 - down * down));
+/// Lowers what `spans` say of the eight rows from `row` on, which may be more than there are. Where a span ends within a vector,
+/// the rest of it keeps what it has.
+inline __attribute__((always_inline)) void lower(const Area& area, int row, const Spans& spans) {
+  constexpr Places lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  DepthCode* to = area.to + row * area.stride;
+  const auto one = [&](int y, int x) __attribute__((always_inline)) {
+    const auto first = static_cast<std::int16_t>(spans.first[y]), end = static_cast<std::int16_t>(spans.end[y]);
+    const Places at = lane + static_cast<std::int16_t>(x);
+    Codes now;
+    std::memcpy(&now, to + x, sizeof now);
+    const Codes other = area.depth | ~reinterpret_cast<Codes>((at >= first) & (at < end));
+    now = now < other ? now : other;
+    std::memcpy(to + x, &now, sizeof now);
+  };
+  if (area.width <= lanes) {
+#pragma GCC unroll 8
+    for (int y = 0; y < eight; ++y, to += area.stride) one(y, 0);
+    return;
+  }
+  for (int y = 0; y < eight; ++y, to += area.stride)
+    for (int x = spans.first[y] / lanes * lanes; x < spans.end[y]; x += lanes) one(y, x);
+}
+
+/// Its centre in pixels from the rectangle's corner, half its width, half its height. In fp32, which moves the rim by less
+/// than 2^-19 of the ellipse's size: it is made so much smaller.
+struct Ellipse {
+  double x, y, wide, high;
+};
+WIDE void lowerEllipse(const Area& area, const Ellipse& e) {
+  const double less = (e.wide + e.high) * 0x1p-19;
+  const auto x = static_cast<float>(e.x), y = static_cast<float>(e.y - 0.5), width = static_cast<float>(area.width);
+  const auto wide = static_cast<float>(e.wide - less), each = static_cast<float>(1 / (e.high - less));
+  for (int row = 0; row < area.height; row += eight) {
+    Spans spans;
+    for (int i = 0; i < eight; ++i) {
+      const float down = (static_cast<float>(row + i) - y) * each, half = wide * std::sqrt(most(0.f, 1 - down * down));
       spans.first[i] = place(x - half, width);
       spans.end[i] = place(x + half, width);
     }
+    lower(area, row, spans);
+  }
 }
 
-/// An edge bounds x in each row, on the left or on the right; on the other side, by `none`, it does not.
+/// An edge bounds x in each row, on the left or on the right; on the other side, by `none`, it does not. Rows beyond top or
+/// bottom are not in it. In pixels from the rectangle's corner.
 struct Edges {
   double left[4], right[4], slope[4];
+  int count = 0;
+  double top, bottom;
 };
 constexpr double none = 1e300;
 
-WIDE void polygonSpans(const Edges& edges, int count, double width, int row, int rows, Spans& spans) {
-  for (int of = 0; of < rows; of += eight) {
+WIDE void lowerPolygon(const Area& area, const Edges& edges) {
+  const double width = area.width;
+  const int first = place(edges.top, double(area.height)), end = place(edges.bottom, double(area.height));
+  for (int row = first; row < end; row += eight) {
     double from[eight], to[eight];
-    for (int i = 0; i < eight; ++i) from[i] = 0, to[i] = width;
-    for (int k = 0; k < count; ++k) {
+    for (int i = 0; i < eight; ++i) from[i] = 0, to[i] = row + i < end ? width : 0;
+    for (int k = 0; k < edges.count; ++k) {
       const double left = edges.left[k], right = edges.right[k], slope = edges.slope[k];
       for (int i = 0; i < eight; ++i) {
-        const double x = slope * (row + of + i + 0.5);
+        const double x = slope * (row + i + 0.5);
         from[i] = most(from[i], left + x), to[i] = least(to[i], right + x);
       }
     }
+    Spans spans;
     for (int i = 0; i < eight; ++i) {
-      spans.first[of + i] = place(from[i], width);
-      spans.end[of + i] = place(to[i], width);
+      spans.first[i] = place(from[i], width);
+      spans.end[i] = place(to[i], width);
     }
+    lower(area, row, spans);
   }
-}
-
-/// Lowers what `spans` say of `rows` rows to `depth`; `to` is the rectangle's left in the first of them. Where a span ends
-/// within a vector, the rest of it keeps what it has.
-WIDE void lower(DepthCode* to, std::size_t stride, int width, int rows, const Spans& spans, DepthCode depth) {
-  constexpr Places lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  for (int y = 0; y < rows; ++y, to += stride) {
-    const auto first = static_cast<std::int16_t>(spans.first[y]), end = static_cast<std::int16_t>(spans.end[y]);
-    // Narrow solids: the same number of vectors in each row.
-    const int from = width <= 4 * lanes ? 0 : first / lanes * lanes, last = width <= 4 * lanes ? width : end;
-    Places at = lane + static_cast<std::int16_t>(from);
-    for (int x = from; x < last; x += lanes, at += lanes) {
-      Codes now;
-      std::memcpy(&now, to + x, sizeof now);
-      const Codes other = depth | ~reinterpret_cast<Codes>((at >= first) & (at < end));
-      now = now < other ? now : other;
-      std::memcpy(to + x, &now, sizeof now);
-    }
-  }
-}
-
-WIDE void lowerAll(DepthCode* to, const DepthCode* by, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) to[i] = std::min(to[i], by[i]);
 }
 
 /// The largest of four rows, by groups of four pixels.
@@ -119,101 +140,130 @@ WIDE void widened(const DepthCode* of, std::size_t across, std::size_t down, std
   }
 }
 
+/// Whether some pixel of a small solid's rectangle is not hit before it begins; `from` is its first. Always whole eights of
+/// rows: how many there are differs from solid to solid.
+inline __attribute__((always_inline)) bool somePixel(const DepthCode* from, std::ptrdiff_t stride, int width,
+                                                     int height, DepthCode nearest) {
+  Codes deepest{};
+  for (int of = 0; of < height; of += eight)
+#pragma GCC unroll 8
+    for (int y = of; y < of + eight; ++y) {
+      Codes now;
+      std::memcpy(&now, from, sizeof now);
+      deepest = deepest > now ? deepest : now;
+      from += y + 1 < height ? stride : 0;
+    }
+  constexpr Places lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const Codes seen = reinterpret_cast<Codes>(lane < static_cast<std::int16_t>(width)) & (deepest >= nearest);
+  std::uint64_t any[sizeof seen / 8];
+  std::memcpy(any, &seen, sizeof seen);
+  return any[0] | any[1] | any[2] | any[3];
+}
+
+__attribute__((noinline)) bool someTile(const TileLimits& tiles, const SeenWithin& s) {
+  constexpr std::uint32_t side = TileLimits::side;
+  return tiles.some((s.first & 0xffff) / side, (s.first >> 16) / side, (s.last & 0xffff) / side, (s.last >> 16) / side,
+                    s.nearest());
+}
+
+WIDE std::size_t visibleOf(const DepthCode* depth, std::ptrdiff_t stride, const TileLimits& tiles,
+                           std::span<const SeenWithin> solids, std::size_t mostCovering,
+                           std::span<std::uint32_t> places, std::size_t& looked) {
+  std::size_t found = 0, covering = 0, at = looked;
+  for (; at < solids.size() && found < places.size() && covering < mostCovering; ++at) {
+    const SeenWithin s = solids[at];
+    if (tiles.behind(s.first & 0xffff, s.first >> 16, s.last & 0xffff, s.last >> 16, s.nearest())) continue;
+    const int width = s.x1() - s.x0() + 1, height = s.y1() - s.y0() + 1;
+    const bool seen = (width <= lanes) & (height <= lanes)
+                          ? somePixel(depth + s.y0() * stride + s.x0(), stride, width, height, s.nearest())
+                          : someTile(tiles, s);
+    places[found] = static_cast<std::uint32_t>(at);
+    found += seen, covering += seen & s.covers();
+  }
+  looked = at;
+  return found;
+}
+
 }  // namespace
 
-void DepthBounds::start(const Crop& region, int stride, int rows, int wide) {
-  stride_ = static_cast<std::size_t>(stride), rows_ = static_cast<std::size_t>(rows);
-  across_ = stride_ / side, wide_ = static_cast<std::size_t>(wide);
-  width_ = region.width, height_ = region.height;
-  tiles_.clear();
-  work_ = 0;
-  most_ = 8.0 * width_ * height_;
-  depth_.resize(stride_ * rows_ + 8 * lanes);  // what lower() touches beyond a row's end
-  std::fill(depth_.begin(), depth_.end(), DepthCode{0});
-  for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y)
-    std::fill_n(depth_.begin() + static_cast<std::ptrdiff_t>(stride_ * y), width_, DepthScale::none);
+void TileLimits::start(std::size_t across, std::size_t down) {
+  across_ = across, down_ = down;
+  for (auto* of : {&byTile_, &deepest2_, &deepest4_}) of->assign(across * down, DepthScale::none);
+  levels_ = {byTile_.data(), deepest2_.data(), deepest4_.data(), deepest4_.data()};
 }
 
-void DepthBounds::add(const Footprint& f, const Cover& cover) {
-  const double width = f.x1 - f.x0 + 1;
-  const int height = f.y1 - f.y0 + 1;
-  work_ += width * height;
-  double top, bottom;
+void TileLimits::widen() {
+  widened(byTile_.data(), across_, down_, 1, deepest2_.data());
+  widened(deepest2_.data(), across_, down_, 2, deepest4_.data());
+}
+
+void DepthBounds::start(const Crop& area, int width, int height) {
+  area_ = area;
+  stride_ = area.width + lanes;  // lower() and visible() touch what is beyond a row's end, and rows beyond the last
+  depth_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(area.height + eight) + lanes,
+                DepthCode{0});
+  const int inside = std::min(area.width, width - area.x), rows = std::min(area.height, height - area.y);
+  for (int y = 0; y < rows; ++y) std::fill_n(depth_.begin() + y * stride_, std::max(inside, 0), DepthScale::none);
+  tiles_.start(static_cast<std::size_t>(area.width / side), static_cast<std::size_t>(area.height / side));
+  deepest_ = DepthScale::none;
+}
+
+SeenWithin within(const Footprint& f, std::uint32_t solid, const Crop& area) {
+  constexpr int side = TileLimits::side;
+  const auto pixel = [](std::int32_t x, std::int32_t y) {
+    return static_cast<std::uint32_t>(y) << 16 | static_cast<std::uint32_t>(x);
+  };
+  // Of 2x2 tiles, what is left of them where the area begins after the first.
+  const int right = f.x0 / side < area.x / side, lower = f.y0 / side < area.y / side;
+  const std::uint32_t misses = f.misses >> (right + 2 * lower) & (right ? 5 : 15), covers = f.hides != DepthScale::none;
+  return {pixel(std::max(f.x0 - area.x, 0), std::max(f.y0 - area.y, 0)),
+          pixel(std::min(f.x1 - area.x, area.width - 1), std::min(f.y1 - area.y, area.height - 1)),
+          covers << 24 | misses << 16 | f.nearest, solid};
+}
+
+void DepthBounds::add(const SeenWithin& in, DepthCode hides, const Cover& cover) {
+  const double left = in.x0() + area_.x, above = in.y0() + area_.y;  // as the cover counts
+  const Area area{depth_.data() + in.y0() * stride_ + in.x0(), stride_, in.x1() - in.x0() + 1, in.y1() - in.y0() + 1,
+                  hides};
+  if (cover.corners == 0) return lowerEllipse(area, {cover.v[0] - left, cover.v[1] - above, cover.v[2], cover.v[3]});
+  const auto corner = [&](int i) { return cover.v + 2 * (i == cover.corners ? 0 : i); };
+  double turn = 0, top = none, bottom = -none;
+  for (int i = 0; i < cover.corners; ++i) {
+    const double *p = corner(i), *q = corner(i + 1);
+    turn += p[0] * q[1] - q[0] * p[1];
+    top = least(top, p[1]), bottom = most(bottom, p[1]);
+  }
   Edges edges;
-  int count = 0;
-  if (cover.corners == 0) {
-    top = cover.v[1] - cover.v[3], bottom = cover.v[1] + cover.v[3];
-  } else {
-    double turn = 0;
-    const auto corner = [&](int i) { return cover.v + 2 * (i == cover.corners ? 0 : i); };
-    top = none, bottom = -none;
-    for (int i = 0; i < cover.corners; ++i) {
-      const double *p = corner(i), *q = corner(i + 1);
-      turn += p[0] * q[1] - q[0] * p[1];
-      top = least(top, p[1]), bottom = most(bottom, p[1]);
-    }
-    for (int i = 0; i < cover.corners; ++i) {
-      const double *p = corner(i), *q = corner(i + 1);
-      const double down = q[1] - p[1], along = q[0] - p[0];
-      if (std::abs(down) <= 1e-7 * std::abs(along)) continue;  // as good as level: top or bottom bounds it
-      const double slope = along / down, shift = cover.margin * (1 + std::abs(slope));
-      const double x = p[0] - f.x0 - slope * (p[1] - f.y0);
-      const bool isLeft = (down < 0) == (turn > 0);
-      edges.left[count] = isLeft ? x + shift : -none, edges.right[count] = isLeft ? none : x - shift;
-      edges.slope[count++] = slope;
-    }
-    top += 2 * cover.margin, bottom -= 2 * cover.margin;
+  edges.top = top - above + 2 * cover.margin, edges.bottom = bottom - above - 2 * cover.margin;
+  for (int i = 0; i < cover.corners; ++i) {
+    const double *p = corner(i), *q = corner(i + 1);
+    const double down = q[1] - p[1], along = q[0] - p[0];
+    if (std::abs(down) <= 1e-7 * std::abs(along)) continue;  // as good as level: top or bottom bounds it
+    const double slope = along / down, shift = cover.margin * (1 + std::abs(slope));
+    const double x = p[0] - left - slope * (p[1] - above);
+    const bool isLeft = (down < 0) == (turn > 0);
+    edges.left[edges.count] = isLeft ? x + shift : -none, edges.right[edges.count] = isLeft ? none : x - shift;
+    edges.slope[edges.count++] = slope;
   }
-  const int first = place(top - f.y0, double(height)), end = place(bottom - f.y0, double(height));
-  Spans spans;
-  for (int row = first; row < end; row += together) {
-    const int rows = std::min(end - row, together);
-    if (cover.corners == 0) ellipseSpans(cover.v, f.x0, f.y0, static_cast<float>(width), row, rows, spans);
-    else polygonSpans(edges, count, width, row, rows, spans);
-    lower(depth_.data() + static_cast<std::size_t>(f.y0 + row) * stride_ + f.x0, stride_, static_cast<int>(width), rows,
-          spans, f.hides);
-  }
-}
-
-void DepthBounds::merge(const std::vector<DepthBounds*>& all, std::size_t first, std::size_t end) {
-  const std::size_t from = first * all[0]->stride_, count = (end - first) * all[0]->stride_;
-  DepthCode* nearest = all[0]->depth_.data() + from;
-  for (std::size_t i = 1; i < all.size(); ++i) lowerAll(nearest, all[i]->depth_.data() + from, count);
-  for (std::size_t i = 1; i < all.size(); ++i) std::copy_n(nearest, count, all[i]->depth_.data() + from);
+  lowerPolygon(area, edges);
 }
 
 void DepthBounds::noteTiles() {
-  const std::size_t across = across_, down = rows_ / side;
-  tiles_.resize(across * down), deepest2_.resize(across * down), deepest4_.resize(across * down);
-  for (std::size_t y = 0; y < down; ++y)
-    deepestOf(depth_.data() + y * side * stride_, stride_, across, tiles_.data() + y * across);
-  widened(tiles_.data(), across, down, 1, deepest2_.data());
-  widened(deepest2_.data(), across, down, 2, deepest4_.data());
-  levels_ = {tiles_.data(), deepest2_.data(), deepest4_.data(), deepest4_.data()};
-  const std::size_t wideAcross = (across + wide_ - 1) / wide_, wideDown = (down + wide_ - 1) / wide_;
-  wideTiles_.assign(wideAcross * wideDown, 0);
-  for (std::size_t y = 0; y < down; ++y)
-    for (std::size_t x = 0; x < across; x += wide_) {
-      const DepthCode* of = tiles_.data() + y * across;
-      DepthCode& deepest = wideTiles_[y / wide_ * wideAcross + x / wide_];
-      deepest = std::max(deepest, *std::max_element(of + x, of + std::min(x + wide_, across)));
-    }
+  const auto across = static_cast<std::size_t>(area_.width / side),
+             down = static_cast<std::size_t>(area_.height / side);
+  deepest_ = 0;
+  for (std::size_t y = 0; y < down; ++y) {
+    DepthCode* row = tiles_.row(y);
+    deepestOf(depth_.data() + static_cast<std::ptrdiff_t>(y) * side * stride_, static_cast<std::size_t>(stride_),
+              across, row);
+    deepest_ = std::max(deepest_, *std::max_element(row, row + across));
+  }
+  tiles_.widen();
 }
 
-bool DepthBounds::hides(const Footprint& f) const {
-  if (f.x1 - f.x0 >= lanes || f.y1 - f.y0 >= lanes || *middle(f) >= f.nearest) return false;
-  const DepthCode* at = depth_.data() + static_cast<std::size_t>(f.y0) * stride_ + f.x0;
-  Codes deepest{};
-  for (int y = f.y0; y <= f.y1; ++y, at += stride_) {
-    Codes now;
-    std::memcpy(&now, at, sizeof now);
-    deepest = deepest > now ? deepest : now;
-  }
-  constexpr Places lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  const Codes seen = reinterpret_cast<Codes>(lane <= static_cast<std::int16_t>(f.x1 - f.x0)) & (deepest >= f.nearest);
-  std::uint64_t any[sizeof seen / 8];
-  std::memcpy(any, &seen, sizeof seen);
-  return !(any[0] | any[1] | any[2] | any[3]);
+std::size_t DepthBounds::visible(std::span<const SeenWithin> solids, std::size_t mostCovering,
+                                 std::span<std::uint32_t> places, std::size_t& looked) const {
+  return visibleOf(depth_.data(), stride_, tiles_, solids, mostCovering, places, looked);
 }
 
 }  // namespace solidcast

@@ -7,58 +7,95 @@
 // no doubt of exact's about it, hangs on a solid that is left out. (fast can see a solid at so flat an angle that its own
 // rounding puts it before what hides it; where it is left out, the picture is the right one.)
 #pragma once
+#include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "host/cast/footprints.h"
 
 namespace solidcast {
 
+/// Of every tile the depth beyond which nothing is seen of it.
+class TileLimits {
+ public:
+  static constexpr int side = Footprints::tile;
+
+  /// Nothing hidden.
+  void start(std::size_t across, std::size_t down);
+  DepthCode* row(std::size_t y) { return byTile_.data() + y * across_; }
+  const DepthCode* row(std::size_t y) const { return byTile_.data() + y * across_; }
+  /// Whether something that begins at `nearest` can be seen in some of the tiles, first and last.
+  bool some(std::uint32_t x0, std::uint32_t y0, std::uint32_t x1, std::uint32_t y1, DepthCode nearest) const {
+    for (std::size_t y = y0; y <= y1; ++y)
+      for (std::size_t x = x0; x <= x1; ++x)
+        if (row(y)[x] >= nearest) return true;
+    return false;
+  }
+  /// To be called when rows have changed, for behind().
+  void widen();
+  /// Whether nothing can be seen of a solid that begins at `nearest` and lies in few tiles; pixels, first and last. In one
+  /// tile: as the tile's limit says.
+  bool behind(std::uint32_t x0, std::uint32_t y0, std::uint32_t x1, std::uint32_t y1, DepthCode nearest) const {
+    const std::uint32_t x = x0 / side, y = y0 / side, most = (x1 / side - x) | (y1 / side - y);
+    const DepthCode* deepest = levels_[most < 3 ? most : 3];
+    return (most < 4) & (nearest > deepest[std::size_t{y} * across_ + x]);
+  }
+
+ private:
+  std::size_t across_ = 0, down_ = 0;
+  std::vector<DepthCode> byTile_, deepest2_, deepest4_;  // of 1, 2x2 and 4x4 tiles from each on
+  std::array<const DepthCode*, 4> levels_{};             // by how many tiles, less one, a solid is in
+};
+
+/// What is seen of a solid within a rectangle of whole tiles, pixels counted from that one's corner. In words, for vectors.
+struct SeenWithin {
+  std::uint32_t first, last;  // pixels: y << 16 | x
+  std::uint32_t more;         // covers << 24 | misses << 16 | nearest
+  std::uint32_t solid;
+  int x0() const { return static_cast<int>(first & 0xffff); }
+  int y0() const { return static_cast<int>(first >> 16); }
+  int x1() const { return static_cast<int>(last & 0xffff); }
+  int y1() const { return static_cast<int>(last >> 16); }
+  DepthCode nearest() const { return static_cast<DepthCode>(more); }
+  std::uint8_t misses() const { return static_cast<std::uint8_t>(more >> 16); }
+  bool covers() const { return more >> 24; }  // it may hide something
+};
+SeenWithin within(const Footprint& f, std::uint32_t solid, const Crop& area);
+
+/// Of a rectangle of a region's pixels, whole tiles.
 class DepthBounds {
  public:
   static constexpr int side = Footprints::tile;
 
-  /// No pixel of the region hidden. Padding up to stride x rows, both multiples of `side`, bounds nothing; wide tiles are
-  /// of `wide` x `wide` tiles.
-  void start(const Crop& region, int stride, int rows, int wide);
+  /// No pixel hidden. Those beyond the region's `width` x `height` bound nothing.
+  void start(const Crop& area, int width, int height);
+  const Crop& area() const { return area_; }
 
-  /// Whether it pays to add the solid seen there: not where its middle is hidden already, and no more large ones when many
-  /// have been added.
-  bool worthIt(const Footprint& f) const {
-    return *middle(f) > f.hides && (double(f.x1 - f.x0 + 1) * (f.y1 - f.y0 + 1) < 4096 || work_ < most_);
-  }
-  void add(const Footprint& f, const Cover& cover);
+  /// `seen` within the area hides what begins beyond `hides` where `cover` says, in pixels of the region.
+  void add(const SeenWithin& seen, DepthCode hides, const Cover& cover);
 
-  /// What all know of the rows from `first` up to, not including, `end`: to all of them.
-  static void merge(const std::vector<DepthBounds*>& all, std::size_t first, std::size_t end);
-  std::size_t rows() const { return rows_; }
-
-  /// Takes down the deepest pixel of every tile, as things are now, for tiles(), wideTiles() and behindTiles().
+  /// Takes down the deepest pixel of every tile, as things are now, for all below.
   void noteTiles();
-  bool noted() const { return !tiles_.empty(); }
-  const DepthCode* tiles() const { return tiles_.data(); }
-  const DepthCode* wideTiles() const { return wideTiles_.data(); }
-  /// Whether nothing can be seen of the solid, by the tiles, where it is in few of them. In one: as the tile's limit says.
-  bool behindTiles(const Footprint& f) const {
-    const auto tile = [](std::int32_t pixel) { return static_cast<std::uint32_t>(pixel) / side; };
-    const std::uint32_t x = tile(f.x0), y = tile(f.y0), most = (tile(f.x1) - x) | (tile(f.y1) - y);
-    const DepthCode* deepest = levels_[most < 3 ? most : 3];
-    return (most < 4) & (f.nearest > deepest[std::size_t{y} * across_ + x]);
+  const TileLimits& tiles() const { return tiles_; }
+  DepthCode deepest() const { return deepest_; }
+
+  /// Places of those that can be seen, as far as is known: one that is in few tiles by these and by its pixels, a larger one
+  /// tile by tile. Ends when the places are full or so many of those seen may cover something; `looked`: how far it came.
+  std::size_t visible(std::span<const SeenWithin> solids, std::size_t mostCovering, std::span<std::uint32_t> places,
+                      std::size_t& looked) const;
+  bool hides(const SeenWithin& seen) const {
+    std::uint32_t place;
+    std::size_t looked = 0;
+    return visible({&seen, 1}, 1, {&place, 1}, looked) == 0;
   }
-  /// Whether nothing of a small solid can be seen where `f` says: each of its pixels is known to be hit before. Of a larger
-  /// one, tile by tile, that is sooner seen from the tiles.
-  bool hides(const Footprint& f) const;
 
  private:
-  const DepthCode* middle(const Footprint& f) const {
-    return depth_.data() + static_cast<std::size_t>((f.y0 + f.y1) / 2) * stride_ + (f.x0 + f.x1) / 2;
-  }
-
-  std::size_t stride_ = 0, rows_ = 0, across_ = 0, wide_ = 1;
-  std::int32_t width_ = 0, height_ = 0;  // of the region
-  double work_ = 0, most_ = 0;           // pixels
-  std::vector<DepthCode> depth_, tiles_, deepest2_, deepest4_, wideTiles_;
-  std::array<const DepthCode*, 4> levels_{};  // by how many tiles, less one, a solid is in
+  Crop area_{};
+  std::ptrdiff_t stride_ = 0;
+  std::vector<DepthCode> depth_;
+  TileLimits tiles_;
+  DepthCode deepest_ = DepthScale::none;
 };
 
 }  // namespace solidcast

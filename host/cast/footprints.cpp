@@ -34,7 +34,8 @@ inline void store(const Footprints::View& v, const Slopes& s, bool plain, double
 
 /// Centres from the world's origin, and radii. True: some sphere is farther than 16 radii.
 /// A disc through the centre, parallel to the image, is a circle there: what it covers, less what rounding takes.
-WIDE bool ofSpheres(const Footprints::View& view, Footprints::Spheres& b) {
+template <bool COVERS>
+inline __attribute__((always_inline)) bool spheres(const Footprints::View& view, Footprints::Spheres& b) {
   const Footprints::View v = view;  // nothing that is stored can change it
   std::int32_t far = 0;
   for (std::size_t i = 0, count = b.count; i < count; ++i) {
@@ -51,19 +52,24 @@ WIDE bool ofSpheres(const Footprints::View& view, Footprints::Spheres& b) {
 
     // Of the squared radius, what the shader's rounding cannot take: lost |f| min(|f|, 16 r), from 16 radii on by the form
     // for far spheres; |f| <= (|f|^2 / Z + Z) / 2.
-    const double slope = 1 / Z, all = radius * radius, square = X * X + Y * Y + Z * Z;
-    const double reach = 8 * radius * (square * slope + Z);
-    const double held = all - v.lost * (square < reach ? square : reach);
-    const double circle = std::sqrt(held > 0 ? held : 0) * slope;
-    const double wide = circle * v.perX - v.margin, high = circle * v.perY - v.margin;
-    b.cover[0][i] = X * slope * v.perX + v.middleX, b.cover[1][i] = Y * slope * v.perY + v.middleY;
-    b.cover[2][i] = wide, b.cover[3][i] = high;
-    const bool covers = (Z > 0) & (square > all * 1.001) & (wide > 0) & (high > 0);
+    const double all = radius * radius, square = X * X + Y * Y + Z * Z;
+    bool covers = (Z > 0) & (square > all * 1.001);
+    if constexpr (COVERS) {
+      const double slope = 1 / Z, reach = 8 * radius * (square * slope + Z);
+      const double held = all - v.lost * (square < reach ? square : reach);
+      const double circle = std::sqrt(held > 0 ? held : 0) * slope;
+      const double wide = circle * v.perX - v.margin, high = circle * v.perY - v.margin;
+      b.cover[0][i] = X * slope * v.perX + v.middleX, b.cover[1][i] = Y * slope * v.perY + v.middleY;
+      b.cover[2][i] = wide, b.cover[3][i] = high;
+      covers = covers & (wide > 0) & (high > 0);
+    }
     store(v, {(X * Z - hx) * inverse, (X * Z + hx) * inverse, (Y * Z - hy) * inverse, (Y * Z + hy) * inverse},
           Z > 1.01 * big, Z - big, Z, covers, i, b);
   }
   return far;
 }
+WIDE bool ofSpheres(const Footprints::View& v, Footprints::Spheres& b) { return spheres<false>(v, b); }
+WIDE bool ofCoveringSpheres(const Footprints::View& v, Footprints::Spheres& b) { return spheres<true>(v, b); }
 
 /// Edges of a polygon, around so that its inner side has along dy - down dx >= 0, dx and dy from the edge's corner. `p`: the
 /// corners in pixels.
@@ -140,16 +146,16 @@ inline __attribute__((always_inline)) std::int32_t missedTiles(const double (&p)
   return few ? missed : 0;
 }
 
-/// Corners from the eye. POLYGON: the first three tell the plane, and what hides by it is nowhere beyond the farthest
+/// Corners from the eye. COVERS: the first three tell the plane, and what hides by it is nowhere beyond the farthest
 /// corner, unless it is seen so flat that the shader's rounding can move it.
-template <std::size_t CORNERS, bool POLYGON>
+template <std::size_t CORNERS, bool POLYGON, bool COVERS>
 inline __attribute__((always_inline)) void corners(const Footprints::View& view, auto& b) {
   const Footprints::View v = view;
   for (std::size_t i = 0, count = b.count; i < count; ++i) {
     const auto& p = b.v;
     Slopes s{1e300, -1e300, 1e300, -1e300};
     double nearest = 1e300, farthest = 0, around[2 * CORNERS];
-    bool front = true, covers = false;
+    bool front = true, covers = POLYGON;
 #pragma GCC unroll 9
     for (std::size_t k = 0; k < CORNERS; ++k) {
       const double x = p[3 * k][i], y = p[3 * k + 1][i], z = p[3 * k + 2][i];
@@ -164,7 +170,7 @@ inline __attribute__((always_inline)) void corners(const Footprints::View& view,
       const std::size_t to = CORNERS == 4 ? k ^ k >> 1 : k;  // around, not by rows
       around[2 * to] = across * v.perX + v.middleX, around[2 * to + 1] = down * v.perY + v.middleY;
     }
-    if constexpr (POLYGON) {
+    if constexpr (COVERS) {
 #pragma GCC unroll 9
       for (std::size_t k = 0; k < 2 * CORNERS; ++k) b.cover[k][i] = around[k];
       const double ax = p[3][i] - p[0][i], ay = p[4][i] - p[1][i], az = p[5][i] - p[2][i];
@@ -176,7 +182,7 @@ inline __attribute__((always_inline)) void corners(const Footprints::View& view,
       covers = covers & ((s.x1 - s.x0) * v.perX > edges) & ((s.y1 - s.y0) * v.perY > edges);
     }
     store(v, s, front, nearest, farthest * (1 + 0x1p-12), covers, i, b);
-    if constexpr (POLYGON) {
+    if constexpr (POLYGON && !COVERS) {
       const Sides<CORNERS> sides(around);
       const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
       b.misses[i] = missedTiles<CORNERS>(around, sides, x0, y0, x1, y1, v.edges);
@@ -185,9 +191,11 @@ inline __attribute__((always_inline)) void corners(const Footprints::View& view,
     }
   }
 }
-WIDE void ofTriangles(const Footprints::View& v, Footprints::Triangles& b) { corners<3, true>(v, b); }
-WIDE void ofQuads(const Footprints::View& v, Footprints::Quads& b) { corners<4, true>(v, b); }
-WIDE void ofBoxes(const Footprints::View& v, Footprints::Boxes& b) { corners<8, false>(v, b); }
+WIDE void ofTriangles(const Footprints::View& v, Footprints::Triangles& b) { corners<3, true, false>(v, b); }
+WIDE void ofCoveringTriangles(const Footprints::View& v, Footprints::Triangles& b) { corners<3, true, true>(v, b); }
+WIDE void ofQuads(const Footprints::View& v, Footprints::Quads& b) { corners<4, true, false>(v, b); }
+WIDE void ofCoveringQuads(const Footprints::View& v, Footprints::Quads& b) { corners<4, true, true>(v, b); }
+WIDE void ofBoxes(const Footprints::View& v, Footprints::Boxes& b) { corners<8, false, false>(v, b); }
 
 }  // namespace
 
@@ -211,6 +219,7 @@ Footprints::Footprints(const Silhouette& silhouette, const Crop& region, const F
   view_.lost = type == RealType::f32 ? 0x1p-17 : 0x1p-40;
   view_.flat = 8 * unitRoundoff(type) * std::sqrt(steep) * 0x1p12;  // an error of 2^-12
   view_.scale = scale;
+  spheres_.corners = 0, triangles_.corners = 3, quads_.corners = 4, boxes_.corners = 0;
   view_.edges = silhouette.centresAlone() ? view_.margin : 1e9;
 }
 
@@ -221,60 +230,31 @@ void Footprints::add(const Corners& corners, auto& batch, std::size_t at) {
   batch.at[batch.count++] = static_cast<std::uint8_t>(at);
 }
 
-void Footprints::spread(auto& batch, std::span<const Shape* const> solids, std::uint8_t corners) {
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    const std::size_t at = batch.at[i];
-    corners_[at] = corners, slot_[at] = static_cast<std::uint8_t>(i);
-    found_[at] = batch.plain[i] ? Footprint{batch.x0[i],
-                                            batch.y0[i],
-                                            batch.x1[i],
-                                            batch.y1[i],
-                                            static_cast<DepthCode>(batch.nearest[i]),
-                                            static_cast<DepthCode>(batch.hides[i]),
-                                            static_cast<std::uint32_t>(batch.misses[i])}
-                                : ask(*solids[at]);
-  }
-  batch.count = 0;
-}
-
-void Footprints::find(std::span<const Shape* const> solids) {
+void Footprints::calculate(std::span<const Shape* const> solids, bool covers) {
+  spheres_.count = triangles_.count = quads_.count = boxes_.count = others_.count = 0;
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const Shape& shape = *solids[i];
     if (const auto* sphere = std::get_if<Sphere>(&shape)) {
       for (std::size_t k = 0; k < 3; ++k) spheres_.v[k][spheres_.count] = sphere->center[k];
       spheres_.v[3][spheres_.count] = sphere->radius;
       spheres_.at[spheres_.count++] = static_cast<std::uint8_t>(i);
-    } else if (!vectors_) {
-      found_[i] = ask(shape);
-    } else if (const auto* triangle = std::get_if<Triangle>(&shape)) {
-      add(outline(*triangle, silhouette_.origin()), triangles_, i);
-    } else if (const auto* quad = std::get_if<Quad>(&shape)) {
-      add(outline(*quad, silhouette_.origin()), quads_, i);
-    } else if (const auto* box = std::get_if<AABox>(&shape)) {
-      add(outline(*box, silhouette_.origin()), boxes_, i);
-    } else {
-      found_[i] = ask(shape);
+      continue;
     }
+    const auto* triangle = vectors_ ? std::get_if<Triangle>(&shape) : nullptr;
+    const auto* quad = vectors_ ? std::get_if<Quad>(&shape) : nullptr;
+    const auto* box = vectors_ ? std::get_if<AABox>(&shape) : nullptr;
+    if (triangle) add(outline(*triangle, silhouette_.origin()), triangles_, i);
+    else if (quad) add(outline(*quad, silhouette_.origin()), quads_, i);
+    else if (box) add(outline(*box, silhouette_.origin()), boxes_, i);
+    else others_.at[others_.count++] = static_cast<std::uint8_t>(i);
   }
   if (spheres_.count) {
-    farSphere_ |= ofSpheres(view_, spheres_);
+    farSphere_ |= covers ? ofCoveringSpheres(view_, spheres_) : ofSpheres(view_, spheres_);
     if (!vectors_) std::fill_n(spheres_.plain, spheres_.count, 0);
-    spread(spheres_, solids, 0);
   }
-  if (triangles_.count) ofTriangles(view_, triangles_), spread(triangles_, solids, 3);
-  if (quads_.count) ofQuads(view_, quads_), spread(quads_, solids, 4);
-  if (boxes_.count) ofBoxes(view_, boxes_), spread(boxes_, solids, 0);
-}
-
-Cover Footprints::cover(std::size_t i) const {
-  Cover cover{corners_[i], view_.margin, {}};
-  const auto take = [&](const auto& batch) {
-    for (std::size_t k = 0; k < std::size(batch.cover); ++k) cover.v[k] = batch.cover[k][slot_[i]];
-  };
-  if (cover.corners == 0) take(spheres_);
-  else if (cover.corners == 3) take(triangles_);
-  else take(quads_);
-  return cover;
+  if (triangles_.count) covers ? ofCoveringTriangles(view_, triangles_) : ofTriangles(view_, triangles_);
+  if (quads_.count) covers ? ofCoveringQuads(view_, quads_) : ofQuads(view_, quads_);
+  if (boxes_.count) ofBoxes(view_, boxes_);
 }
 
 /// Pixel i is seen at i + 0.5, so that [a, b] holds centres from ceil(a - 0.5) to floor(b - 0.5).

@@ -22,7 +22,7 @@ struct Footprint {
   DepthCode nearest;  // of Rectangle::nearest
   DepthCode hides;    // beyond it, what the solid covers is hidden; DepthScale::none: hides nothing
   // Of a solid in no more than 2x2 tiles of the region: which of them it is not seen in, bits by rows. 0 of others.
-  std::uint32_t misses;
+  std::uint8_t misses;
   bool seen() const { return x0 <= x1 && y0 <= y1; }
 };
 
@@ -43,11 +43,33 @@ class Footprints {
   Footprints(const Silhouette& silhouette, const Crop& region, const Frame<double>& eye, RealType type,
              DepthScale scale = DepthScale());
 
-  /// Of at most `block` solids; [i] and cover(i) then tell of the i-th.
-  void find(std::span<const Shape* const> solids);
-  const Footprint& operator[](std::size_t i) const { return found_[i]; }
-  /// Of a solid that hides something.
-  Cover cover(std::size_t i) const;
+  /// Of at most `block` solids: seen(i, footprint) of the i-th, those of a kind in their order. That one hides something may
+  /// be said of one that does not.
+  void find(std::span<const Shape* const> solids, auto&& seen) {
+    findBatches(
+        solids,
+        [&](const auto& batch) {
+          for (std::size_t i = 0; i < batch.count; ++i) seen(batch.at[i], of(batch, i, solids));
+        },
+        seen);
+  }
+  /// The same by kinds, for vectors: batch(batch), and seen(i, footprint) of what is in none.
+  void findBatches(std::span<const Shape* const> solids, auto&& batch, auto&& seen) {
+    calculate(solids, false);
+    if (spheres_.count) batch(spheres_);
+    if (triangles_.count) batch(triangles_);
+    if (quads_.count) batch(quads_);
+    if (boxes_.count) batch(boxes_);
+    for (std::size_t i = 0; i < others_.count; ++i) seen(others_.at[i], ask(*solids[others_.at[i]]));
+  }
+  Footprint of(const auto& batch, std::size_t i, std::span<const Shape* const> solids) const {
+    return batch.plain[i] ? footprint(batch, i) : ask(*solids[batch.at[i]]);
+  }
+  /// covers(i, footprint, cover) of those that hide something.
+  void findCovers(std::span<const Shape* const> solids, auto&& covers) {
+    calculate(solids, true);
+    eachCover(spheres_, covers), eachCover(triangles_, covers), eachCover(quads_, covers);
+  }
   /// Some sphere of all so far, seen or not, needs sphere.glsl's FAR_SPHERES.
   bool farSphere() const { return farSphere_; }
 
@@ -70,6 +92,7 @@ class Footprints {
     alignas(64) double v[NUMBERS][block];
     std::array<std::uint8_t, block> at;  // the solid's place in the block
     std::size_t count = 0;
+    int corners;  // of Cover
     alignas(64) std::int32_t x0[block], y0[block], x1[block], y1[block], nearest[block], hides[block];
     alignas(64) std::int32_t plain[block], misses[block]{};  // it serves; Footprint::misses
     alignas(64) double cover[COVER][block];
@@ -80,22 +103,42 @@ class Footprints {
   using Boxes = Batch<24, 0>;
 
  private:
+  /// All batches, where slopes are enough (or else the `plain` of spheres is false); others_ where not.
+  void calculate(std::span<const Shape* const> solids, bool covers);
   Footprint ask(const Shape& shape) const;
   template <class Corners>
   static void add(const Corners& corners, auto& batch, std::size_t at);
-  void spread(auto& batch, std::span<const Shape* const> solids, std::uint8_t corners);
+  static Footprint footprint(const auto& batch, std::size_t i) {
+    return {batch.x0[i],
+            batch.y0[i],
+            batch.x1[i],
+            batch.y1[i],
+            static_cast<DepthCode>(batch.nearest[i]),
+            static_cast<DepthCode>(batch.hides[i]),
+            static_cast<std::uint8_t>(batch.misses[i])};
+  }
+  void eachCover(const auto& batch, auto& covers) {
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      if (!batch.plain[i] || batch.hides[i] == DepthScale::none) continue;
+      Cover cover{batch.corners, view_.margin, {}};
+      for (std::size_t k = 0; k < std::size(batch.cover); ++k) cover.v[k] = batch.cover[k][i];
+      covers(batch.at[i], footprint(batch, i), cover);
+    }
+  }
 
   const Silhouette& silhouette_;
   Crop region_;
   View view_;
   bool vectors_;
   bool farSphere_ = false;
-  std::array<Footprint, block> found_;
-  std::array<std::uint8_t, block> corners_, slot_;  // of cover(); place in the batch
   Spheres spheres_;
   Triangles triangles_;
   Quads quads_;
   Boxes boxes_;
+  struct {
+    std::array<std::uint8_t, block> at;
+    std::size_t count = 0;
+  } others_;
 };
 
 }  // namespace solidcast

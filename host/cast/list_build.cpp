@@ -1,6 +1,7 @@
 #include "host/cast/list_build.h"
 
 #include <algorithm>
+#include <atomic>
 #include <barrier>
 #include <cstring>
 
@@ -13,6 +14,81 @@ ListBuilder::ListBuilder() {
 }
 ListBuilder::~ListBuilder() = default;
 
+/// What the patch hides, for all of the picture.
+void ListBuilder::note(std::size_t patch) {
+  const DepthBounds& depths = patches_[patch].depths;
+  const Crop& area = depths.area();
+  for (int y = 0; y < area.height / ListGrid::tile; ++y)
+    std::copy_n(depths.tiles().row(static_cast<std::size_t>(y)), area.width / ListGrid::tile,
+                tileLimits_.row(static_cast<std::size_t>(area.y / ListGrid::tile + y)) + area.x / ListGrid::tile);
+  wideLimits_.row(0)[patch] = depths.deepest();
+}
+
+/// What a picture's records are made for.
+struct ListBuilder::Packs {
+  const World& world;
+  RealType type;
+  bool eyeForms;
+  const EyeFrames& eye;
+};
+
+/// What threads have together while they sift.
+struct ListBuilder::Rounds {
+  explicit Rounds(std::size_t threads) : together(static_cast<std::ptrdiff_t>(threads)) {}
+  std::barrier<> together;
+  std::atomic<std::size_t> next = 0;  // patch, of all rounds
+};
+
+/// A round's solids are looked at by shares, then what is seen of them by patches, so that each of the threads writes what is its
+/// own. Few solids are one round; of many those of later rounds are dropped at once where the earlier hide them.
+void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds,
+                       Footprints& footprints) {
+  constexpr std::size_t firstRound = 131072;
+  const std::span<const SolidEntry> solids = packs.world.solids;
+  Part& part = *parts_[thread];
+  Sieve sieve(solids, footprints);
+  std::vector<const std::vector<SeenWithin>*> narrowOnes(threads);
+  std::vector<std::span<const ListHead>> wideOnes(threads);
+  std::vector<ListHead> heads;
+  std::size_t before = 0;  // what `next` had come to when the round began
+  for (std::size_t from = 0, to; from < solids.size(); from = to) {
+    to = std::min(solids.size(), std::max(firstRound, 4 * from));
+    part.lookForSieve(solids, from + (to - from) * thread / threads, from + (to - from) * (thread + 1) / threads,
+                      footprints, from == 0 ? nullptr : &tileLimits_);
+    rounds.together.arrive_and_wait();
+    for (std::size_t i = rounds.next++; i < before + patches_.size(); i = rounds.next++) {
+      const std::size_t at = i - before;
+      ListPatch& patch = patches_[at];
+      if (from == 0) {
+        const int across = grid_.wideAcross(), x = static_cast<int>(at) % across, y = static_cast<int>(at) / across;
+        patch.kept.clear();
+        patch.depths.start(grid_.wideArea(x, y), grid_.region.width, grid_.region.height);
+      }
+      for (std::size_t t = 0; t < threads; ++t) {
+        narrowOnes[t] = &parts_[t]->seenIn[at];
+        wideOnes[t] = std::span(parts_[t]->heads[wide]).subspan(parts_[t]->newWides);
+      }
+      sieve.sift(patch, narrowOnes, wideOnes);
+      for (std::size_t t = 0; t < threads; ++t) parts_[t]->seenIn[at].clear();
+      note(at);
+      if (to < solids.size()) continue;
+      sieve.siftKept(patch);
+      heads.clear();
+      const Crop& area = patch.depths.area();
+      for (const SeenWithin& s : patch.kept)
+        heads.push_back(
+            {{s.x0() + area.x, s.y0() + area.y, s.x1() + area.x, s.y1() + area.y, s.nearest(), 0, s.misses()},
+             s.solid});
+      part.pack(heads, narrow, tileLimits_, packs.world, packs.type, packs.eyeForms, packs.eye);
+    }
+    rounds.together.arrive_and_wait();
+    before += patches_.size() + threads;  // each thread took one too many
+    if (to == solids.size()) break;
+    if (thread == 0) tileLimits_.widen();
+    rounds.together.arrive_and_wait();
+  }
+}
+
 void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType type, bool eyeForms,
                           const Silhouette& silhouette, const ListGrid& grid) {
   grid_ = grid, type_ = type, eyeForms_ = eyeForms;
@@ -24,42 +100,50 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
   const DepthScale scale(canHide ? static_cast<float>(hasUnit ? frame.unit : eyeFrame(scene, RealType::f32).unit)
                                  : 1.f);
   const auto footprints = [&] { return Footprints(silhouette, grid.region, eye.plain, type, scale); };
-  Crowd crowd;
+  bool hiding = canHide;
   if (canHide) {
-    auto sample = footprints();
-    crowd = Crowd(world.solids, grid.region, type, sample);
+    auto some = footprints();
+    hiding = worthSifting(world.solids, grid.region, type, some);
   }
-  const bool hiding = crowd.worthLooking();
-  std::vector<DepthBounds*> depths;
-  for (std::size_t t = 0; t < threads; ++t) depths.push_back(&parts_[t]->depths);
-  for (auto& part : parts_) part->start(grid, false);
-  std::barrier together(static_cast<std::ptrdiff_t>(threads));
+  tileLimits_.start(static_cast<std::size_t>(grid_.across), static_cast<std::size_t>(grid_.down));
+  wideLimits_.start(static_cast<std::size_t>(grid_.wideAcross()), static_cast<std::size_t>(grid_.wideDown()));
+  patches_.resize(hiding ? static_cast<std::size_t>(grid_.wideAcross() * grid_.wideDown()) : 0);
+  const Packs packs{world, type, eyeForms, eye};
+  Rounds rounds(threads);
   workers_.run(static_cast<int>(threads), [&](int at) {
     const auto t = static_cast<std::size_t>(at);
     Part& part = *parts_[t];
+    for (std::size_t k = t; k < parts_.size(); k += threads) parts_[k]->start(grid);
     auto own = footprints();
-    const auto tell = [&] {
-      together.arrive_and_wait();
-      DepthBounds::merge(depths, depths[0]->rows() * t / threads, depths[0]->rows() * (t + 1) / threads);
-      together.arrive_and_wait();
-    };
-    part.start(grid, hiding);
-    part.look(world.solids, solids * t / threads, solids * (t + 1) / threads, own, crowd);
-    if (hiding) {
-      tell();
-      part.lookBehind(world.solids, own);
-      tell();
-    }
-    part.pack(world, type, eyeForms, eye);
+    if (hiding) sift(t, threads, packs, rounds, own);
+    else part.look(world.solids, solids * t / threads, solids * (t + 1) / threads, own);
+    part.pack(part.heads[narrow], narrow, tileLimits_, world, type, eyeForms, eye);
+    const auto wideTile = [&](int pixel) { return static_cast<std::uint32_t>(pixel / (grid.wide * ListGrid::tile)); };
+    std::erase_if(part.heads[wide], [&](const ListHead& head) {
+      const Footprint& f = head.seen;
+      return !wideLimits_.some(wideTile(f.x0), wideTile(f.y0), wideTile(f.x1), wideTile(f.y1), f.nearest);
+    });
+    part.pack(part.heads[wide], wide, wideLimits_, world, type, eyeForms, eye);
   });
   grazing_ = farSphere_ = boxOnFace_ = false;
-  seen_ = 0;
   for (const auto& part : parts_) {
     grazing_ = grazing_ || part->grazing, farSphere_ = farSphere_ || part->farSphere;
-    boxOnFace_ = boxOnFace_ || part->boxOnFace, seen_ += part->seen;
+    boxOnFace_ = boxOnFace_ || part->boxOnFace;
   }
   layOut();
   sortTiles();
+}
+
+std::size_t ListBuilder::seen() const {
+  std::vector<bool> is;
+  std::size_t count = 0;
+  for (const auto& part : parts_)
+    for (const std::uint32_t solid : part->listed) {
+      if (solid >= is.size()) is.resize(solid + std::size_t{1});
+      count += !is[solid];
+      is[solid] = true;
+    }
+  return count;
 }
 
 /// Kind by kind and tile by tile, each tile's entries in the order of the solids.

@@ -2,13 +2,14 @@
 // out in the order they are walked. Most of a large picture's time is spent here, so the solids are gone over once, on
 // all cores: seen or not, record, tiles; and a second time only over what is seen, to copy its record to its tiles.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "host/cast/footprints.h"
+#include "host/cast/list_sieve.h"
 #include "host/cast/records.h"
 #include "host/cast/silhouette.h"
 #include "host/cast/workers.h"
@@ -25,6 +26,11 @@ struct ListGrid {
   int wide = 16;
   int wideAcross() const { return (across + wide - 1) / wide; }
   int wideDown() const { return (down + wide - 1) / wide; }
+  /// A wide tile's pixels, counted from the region's corner.
+  Crop wideArea(int x, int y) const {
+    const int side = wide * tile;
+    return {x * side, y * side, std::min(side, across * tile - x * side), std::min(side, down * tile - y * side)};
+  }
 };
 
 /// By lane of a dispatch, as lists.comp reads it.
@@ -54,7 +60,7 @@ class ListBuilder {
   bool farSphere() const { return farSphere_; }
   bool boxOnFace() const { return boxOnFace_; }
   std::size_t rows() const { return rows_; }  // that the lists take
-  std::size_t seen() const { return seen_; }  // solids
+  std::size_t seen() const;                   // solids; counts them
   /// Tiles with solids, longest lists first, then the others. A dispatch may go beyond listedTiles(), never beyond all.
   std::span<const std::uint32_t> tiles() const { return order_; }
   std::size_t listedTiles() const { return listed_; }
@@ -67,6 +73,11 @@ class ListBuilder {
              const std::array<bool, kindCount>& slots);
 
  private:
+  struct Packs;
+  struct Rounds;
+  /// A thread's part of finding what is not hidden, in rounds of all threads.
+  void sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds, Footprints& footprints);
+  void note(std::size_t patch);
   void layOut();
   void sortTiles();
 
@@ -75,9 +86,11 @@ class ListBuilder {
   bool eyeForms_ = true;
   Workers workers_;
   std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<ListPatch> patches_;  // by wide tile
+  TileLimits tileLimits_, wideLimits_;
   std::array<bool, kindCount> kinds_{};
   bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, wideOnes_ = false;
-  std::size_t rows_ = 0, seen_ = 0, listed_ = 0;
+  std::size_t rows_ = 0, listed_ = 0;
   // [narrow 0 or wide 1][kind]: by tile, and for the wide ones the count beside
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> first_, count_;
   std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles by falling entries

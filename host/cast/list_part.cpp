@@ -1,9 +1,11 @@
 #include "host/cast/list_part.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 
 #include "host/cast/record_batch.h"
+#include "host/cast/wide.h"
 
 namespace solidcast {
 namespace {
@@ -32,26 +34,6 @@ ListLevel levelOf(const Footprint& f) {
     return std::uint64_t{static_cast<std::uint32_t>(last) / side - static_cast<std::uint32_t>(first) / side + 1};
   };
   return tiles(f.x0, f.x1) * tiles(f.y0, f.y1) > mostTiles ? wide : narrow;
-}
-
-/// Tiles of a level, first and last, that a solid's rectangle lies in.
-struct TileRange {
-  std::uint32_t x0, y0, x1, y1;
-  TileRange(const Footprint& f, int side) {
-    const auto tile = [&](std::int32_t pixel) {
-      return side == ListGrid::tile ? unsigned(pixel) / ListGrid::tile : unsigned(pixel) / unsigned(side);
-    };
-    x0 = tile(f.x0), y0 = tile(f.y0), x1 = tile(f.x1), y1 = tile(f.y1);
-  }
-  std::size_t count() const { return std::size_t{x1 - x0 + 1} * (y1 - y0 + 1); }
-};
-
-bool reaches(const Footprint& f, const ListLimits& limits) {
-  const TileRange range(f, limits.side);
-  for (std::size_t y = range.y0; y <= range.y1; ++y)
-    for (std::size_t x = range.x0; x <= range.x1; ++x)
-      if (f.nearest <= limits.byTile[y * limits.across + x]) return true;
-  return false;
 }
 
 std::uint32_t numberAt(const std::byte* at) {
@@ -88,63 +70,24 @@ void writeRows(std::span<const std::byte> from, std::uint32_t rowCount, std::byt
 
 std::uint32_t rowsOf(std::size_t kind, bool eyeForms) { return rowsOfKind[kind][eyeForms]; }
 
-Crowd::Crowd(std::span<const SolidEntry> solids, const Crop& region, RealType type, Footprints& footprints) {
-  const std::size_t step = solids.size() / 256 + 1, looked = (solids.size() + step - 1) / step;
-  const double share = 1.0 / looked * solids.size() / region.width / region.height;
-  std::array<const Shape*, Footprints::block> shapes;
-  for (std::size_t i = 0, count = 0; i < solids.size(); i += step) {
-    shapes[count++] = &solids[i].shape;
-    if (count < shapes.size() && i + step < solids.size()) continue;
-    footprints.find(std::span(shapes).first(count));
-    for (std::size_t k = 0; k < count; ++k) {
-      const Footprint& f = footprints[k];
-      if (!f.seen() || f.hides == DepthScale::none) continue;
-      const double layers = (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1) * share;
-      some_.push_back({f.hides, layers});
-      worth_ += layers / (footprints.cover(k).corners == 0 ? 3 : type == RealType::f32 ? 10 : 5);
-    }
-    count = 0;
-  }
-  std::sort(some_.begin(), some_.end());
-  double sum = 0;
-  for (auto& [depth, layers] : some_) layers = sum += layers;
-}
-
-DepthCode Crowd::depthOf(double layers) const {
-  const auto beyond =
-      std::partition_point(some_.begin(), some_.end(), [&](const auto& s) { return s.second < layers; });
-  return beyond == some_.end() ? DepthScale::none - 1 : beyond->first;
-}
-
-void ListBuilder::Part::start(const ListGrid& grid, bool hiding) {
-  grid_ = grid, hiding_ = hiding;
+void ListBuilder::Part::start(const ListGrid& grid) {
+  grid_ = grid;
   grazing = farSphere = boxOnFace = false;
-  seen = 0;
+  listed.clear();
+  seenIn.resize(std::size_t{1} * grid.wideAcross() * grid.wideDown());
+  for (auto& of : seenIn) of.clear();
   for (auto& of : heads) of.clear();
+  newWides = 0;
   for (auto& level : found)
     for (Arena& arena : level) arena.clear();
   for (auto& level : tiles)
     for (auto& counts : level) counts.clear();
-  if (hiding) depths.start(grid.region, grid.across * ListGrid::tile, grid.down * ListGrid::tile, grid.wide);
 }
 
-ListLimits ListBuilder::Part::limits(ListLevel level) const {
-  if (level == wide)
-    return {hiding_ ? depths.wideTiles() : nullptr, static_cast<std::size_t>(grid_.wideAcross()),
-            grid_.wide * ListGrid::tile};
-  return {hiding_ ? depths.tiles() : nullptr, static_cast<std::size_t>(grid_.across), ListGrid::tile};
-}
+namespace {
 
-/// At first all are drawn, since nothing is known; the more have been looked at, the fewer layers of all are enough for some
-/// in front of each pixel, and what is behind those is dropped at once.
-void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
-                             Footprints& footprints, const Crowd& crowd) {
-  constexpr double firstLayers = 3;
-  constexpr std::size_t fewest = 12000;  // what a note costs is little beside so many solids
-  const auto frontAt = [&](std::size_t at) { return crowd.depthOf(firstLayers * solids.size() / (at - from)); };
-  std::size_t note = from + fewest;
-  while (hiding_ && note - from < (to - from) / 16) note = from + 2 * (note - from);
-  DepthCode front = hiding_ ? frontAt(note) : 0;
+/// By blocks; find(shapes, the first's place).
+void forEachBlock(std::span<const SolidEntry> solids, std::size_t from, std::size_t to, auto&& find) {
   std::array<const Shape*, Footprints::block> shapes;
   for (std::size_t first = from; first < to; first += Footprints::block) {
     const std::size_t count = std::min(Footprints::block, to - first);
@@ -154,64 +97,105 @@ void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t fro
       const auto* next = reinterpret_cast<const char*>(solids.data() + first + i + Footprints::block);
       __builtin_prefetch(next), __builtin_prefetch(next + 64);
     }
-    footprints.find(std::span(shapes).first(count));
-    if (hiding_ && first >= note) {
-      depths.noteTiles();
-      note = from + 2 * (note - from);
-      front = frontAt(note);
-    }
-    const bool noted = hiding_ && depths.noted();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Footprint& f = footprints[i];
-      if (!f.seen() || (noted && depths.behindTiles(f))) continue;
-      if (hiding_ && f.hides <= front && depths.worthIt(f)) depths.add(f, footprints.cover(i));
-      heads[levelOf(f)].push_back({f, static_cast<std::uint32_t>(first + i)});
-    }
+    find(std::span<const Shape* const>(shapes).first(count), static_cast<std::uint32_t>(first));
   }
+}
+
+/// Of a batch: the words of SeenWithin in the wide tile `patch` of each solid that is in one alone; of others there is none.
+struct Routes {
+  static constexpr std::int32_t none = -1;
+  alignas(64) std::uint32_t first[Footprints::block], last[Footprints::block], more[Footprints::block];
+  alignas(64) std::int32_t patch[Footprints::block];
+};
+
+template <class Batch>
+inline __attribute__((always_inline)) void routesOf(const Batch& b, int shift, std::int32_t across, Routes& r) {
+  const std::int32_t inside = (1 << shift) - 1;
+  const bool fits = inside < 64;  // or else one can be in too many tiles of it
+  for (std::size_t i = 0, count = b.count; i < count; ++i) {
+    const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
+    const std::int32_t px = x0 >> shift, py = y0 >> shift;
+    const bool one = (((x1 >> shift) - px) | ((y1 >> shift) - py)) == 0;
+    const bool simple = one & (x0 <= x1) & (y0 <= y1) & (b.plain[i] != 0) & (fits | (((x1 - x0) | (y1 - y0)) < 60));
+    r.first[i] = static_cast<std::uint32_t>((y0 & inside) << 16 | (x0 & inside));
+    r.last[i] = static_cast<std::uint32_t>((y1 & inside) << 16 | (x1 & inside));
+    const std::int32_t covers = b.hides[i] != DepthScale::none ? 1 << 24 : 0;
+    r.more[i] = static_cast<std::uint32_t>(covers | b.misses[i] << 16 | b.nearest[i]);
+    r.patch[i] = simple ? py * across + px : Routes::none;
+  }
+}
+WIDE void routes(const Footprints::Spheres& b, int shift, std::int32_t across, Routes& r) {
+  routesOf(b, shift, across, r);
+}
+WIDE void routes(const Footprints::Triangles& b, int shift, std::int32_t across, Routes& r) {
+  routesOf(b, shift, across, r);
+}
+WIDE void routes(const Footprints::Quads& b, int shift, std::int32_t across, Routes& r) {
+  routesOf(b, shift, across, r);
+}
+WIDE void routes(const Footprints::Boxes& b, int shift, std::int32_t across, Routes& r) {
+  routesOf(b, shift, across, r);
+}
+
+}  // namespace
+
+void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
+                             Footprints& footprints) {
+  forEachBlock(solids, from, to, [&](std::span<const Shape* const> shapes, std::uint32_t first) {
+    footprints.find(shapes, [&](std::size_t i, const Footprint& f) {
+      if (!f.seen()) return;
+      ListHead& head = heads[levelOf(f)].emplace_back();
+      head.seen = f, head.solid = first + static_cast<std::uint32_t>(i);
+    });
+  });
   // Of the whole scene, seen or not: so that fast has the same bits in every plan.
   farSphere = footprints.farSphere();
 }
 
-/// No branches: half of the solids are hidden.
-void ListBuilder::Part::dropHidden() {
-  for (std::vector<Head>& all : heads) {
-    std::size_t left = 0;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const bool hidden = depths.behindTiles(all[i].seen);
-      all[left] = all[i];
-      left += !hidden;
-    }
-    all.resize(left);
-  }
-}
-
-void ListBuilder::Part::lookBehind(std::span<const SolidEntry> solids, Footprints& footprints) {
-  depths.noteTiles();
-  dropHidden();
-  std::array<const Shape*, Footprints::block> shapes;
-  std::size_t count = 0;
-  const auto draw = [&] {
-    footprints.find(std::span(shapes).first(count));
-    for (std::size_t i = 0; i < count; ++i)
-      if (depths.worthIt(footprints[i])) depths.add(footprints[i], footprints.cover(i));
-    count = 0;
-  };
-  for (const std::vector<Head>& all : heads)
-    for (const Head& head : all) {
-      if (head.seen.hides == DepthScale::none || !depths.worthIt(head.seen)) continue;
-      shapes[count++] = &solids[head.solid].shape;
-      if (count == Footprints::block) draw();
-    }
-  draw();
+void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
+                                     Footprints& footprints, const TileLimits* limits) {
+  newWides = heads[wide].size();
+  const int shift = std::countr_zero(static_cast<std::uint32_t>(grid_.wide * ListGrid::tile));
+  const std::int32_t across = grid_.wideAcross();
+  Routes r;
+  forEachBlock(solids, from, to, [&](std::span<const Shape* const> shapes, std::uint32_t first) {
+    const auto anywhere = [&](std::size_t i, const Footprint& f) {
+      if (!f.seen()) return;
+      const std::uint32_t solid = first + static_cast<std::uint32_t>(i);
+      if (levelOf(f) == wide) return heads[wide].push_back({f, solid});
+      for (std::int32_t y = f.y0 >> shift; y <= f.y1 >> shift; ++y)
+        for (std::int32_t x = f.x0 >> shift; x <= f.x1 >> shift; ++x) {
+          const auto at = static_cast<std::size_t>(y * across + x);
+          seenIn[at].push_back(within(f, solid, grid_.wideArea(x, y)));
+        }
+    };
+    const auto batch = [&](const auto& b) {
+      routes(b, shift, across, r);
+      for (std::size_t i = 0; i < b.count; ++i) {
+        const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
+        if (limits && b.plain[i] && x0 <= x1 && y0 <= y1 &&
+            limits->behind(static_cast<std::uint32_t>(x0), static_cast<std::uint32_t>(y0),
+                           static_cast<std::uint32_t>(x1), static_cast<std::uint32_t>(y1),
+                           static_cast<DepthCode>(b.nearest[i])))
+          continue;
+        if (r.patch[i] == Routes::none) anywhere(b.at[i], footprints.of(b, i, shapes));
+        else
+          seenIn[static_cast<std::size_t>(r.patch[i])].push_back({r.first[i], r.last[i], r.more[i], first + b.at[i]});
+      }
+    };
+    footprints.findBatches(shapes, batch, anywhere);
+  });
+  farSphere = footprints.farSphere();
 }
 
 /// Records of one level's solids, kind by kind in the order of the solids.
 class ListBuilder::Part::Packing {
  public:
-  Packing(Part& part, ListLevel level, const World& world, RealType type, bool eyeForms, const EyeFrames& eye)
-      : part_(part), level_(level), world_(world), type_(type), eyeForms_(eyeForms), eye_(eye) {}
+  Packing(Part& part, ListLevel level, const TileLimits& limits, const World& world, RealType type, bool eyeForms,
+          const EyeFrames& eye)
+      : part_(part), level_(level), limits_(limits), world_(world), type_(type), eyeForms_(eyeForms), eye_(eye) {}
 
-  void add(const Head& head) {
+  void add(const ListHead& head) {
     std::visit([&](const auto& solid) { put(solid, head); }, world_.solids[head.solid].shape);
   }
   void finish() { flush(spheres_), flush(triangles_), flush(quads_); }
@@ -219,15 +203,15 @@ class ListBuilder::Part::Packing {
  private:
   struct Many {
     RecordBatch records;
-    std::array<const Head*, RecordBatch::block> heads;
+    std::array<const ListHead*, RecordBatch::block> heads;
   };
 
-  void put(const auto& solid, const Head& head) { alone(solid, head); }
-  void put(const Sphere& solid, const Head& head) { together(solid, head, spheres_); }
-  void put(const Triangle& solid, const Head& head) { together(solid, head, triangles_); }
-  void put(const Quad& solid, const Head& head) { together(solid, head, quads_); }
+  void put(const auto& solid, const ListHead& head) { alone(solid, head); }
+  void put(const Sphere& solid, const ListHead& head) { together(solid, head, spheres_); }
+  void put(const Triangle& solid, const ListHead& head) { together(solid, head, triangles_); }
+  void put(const Quad& solid, const ListHead& head) { together(solid, head, quads_); }
 
-  void together(const auto& solid, const Head& head, std::optional<Many>& many) {
+  void together(const auto& solid, const ListHead& head, std::optional<Many>& many) {
     if (!eyeForms_ || type_ != RealType::f32) return alone(solid, head);
     if (!many) many.emplace(Many{RecordBatch(kindNumber(solid)), {}});
     many->heads[many->records.size()] = &head;
@@ -240,38 +224,43 @@ class ListBuilder::Part::Packing {
     const RecordBatch& records = many->records;
     const std::uint32_t rows = rowsOf(static_cast<std::size_t>(records.kind()), true);
     for (std::size_t i = 0, count = many->records.pack(eye_.plain); i < count; ++i) {
-      const Head& head = *many->heads[i];
+      const ListHead& head = *many->heads[i];
       if (records.poor(i)) {
         std::visit([&](const auto& solid) { alone(solid, head); }, world_.solids[head.solid].shape);
         continue;
       }
       part_.grazing = part_.grazing || records.grazing(i);
-      records.copy(i, part_.add(static_cast<std::size_t>(records.kind()), 16 * rows, head, level_), 4 * rows);
+      records.copy(i, room(static_cast<std::size_t>(records.kind()), 16 * rows, head), 4 * rows);
     }
   }
 
-  void alone(const auto& solid, const Head& head) {
+  void alone(const auto& solid, const ListHead& head) {
     if (!eyeForms_) {
       RowWriter rows(type_);
       packWorld(solid, eye_.exact.origin, head.solid, rows);
       const auto kind = static_cast<std::size_t>(kindNumber(solid));
-      std::ranges::copy(rows.bytes(), part_.add(kind, rows.bytes().size(), head, level_));
+      std::ranges::copy(rows.bytes(), room(kind, rows.bytes().size(), head));
       return;
     }
     packed(solid, eye_, head.solid, type_, [&](const auto& record) {
       if (record.kind < 0) return;
       part_.grazing = part_.grazing || record.grazing;
       const std::size_t rowSize = rowBytes(type_);
-      std::byte* to = part_.add(static_cast<std::size_t>(record.kind), rowSize * static_cast<std::size_t>(record.rows),
-                                head, level_);
+      std::byte* to =
+          room(static_cast<std::size_t>(record.kind), rowSize * static_cast<std::size_t>(record.rows), head);
       for (int r = 0; r < record.rows; ++r, to += rowSize) writeRow(to, type_, record.row[r]);
     });
     if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
       part_.boxOnFace = part_.boxOnFace || eyeOnFacePlane(solid, eye_.extended);
   }
 
+  std::byte* room(std::size_t kind, std::size_t bytes, const ListHead& head) {
+    return part_.add(kind, bytes, head, level_, limits_);
+  }
+
   Part& part_;
   const ListLevel level_;
+  const TileLimits& limits_;
   const World& world_;
   const RealType type_;
   const bool eyeForms_;
@@ -279,52 +268,48 @@ class ListBuilder::Part::Packing {
   std::optional<Many> spheres_, triangles_, quads_;
 };
 
-void ListBuilder::Part::pack(const World& world, RealType type, bool eyeForms, const EyeFrames& eye) {
-  // Those that are left lie far apart in memory: they are fetched a few ahead.
+void ListBuilder::Part::pack(std::span<const ListHead> heads, ListLevel level, const TileLimits& limits,
+                             const World& world, RealType type, bool eyeForms, const EyeFrames& eye) {
+  // They lie far apart in memory: they are fetched a few ahead.
   constexpr std::size_t ahead = 8;
-  if (hiding_) {
-    depths.noteTiles();
-    dropHidden();
+  Packing packing(*this, level, limits, world, type, eyeForms, eye);
+  for (std::size_t i = 0; i < heads.size(); ++i) {
+    if (i + ahead < heads.size()) fetch(world.solids[heads[i + ahead].solid]);
+    packing.add(heads[i]);
   }
-  for (const ListLevel level : {wide, narrow}) {
-    std::vector<Head>& all = heads[level];
-    if (hiding_)
-      std::erase_if(all, [&, limits = limits(level)](const Head& head) {
-        return !reaches(head.seen, limits) || (level == narrow && depths.hides(head.seen));
-      });
-    Packing packing(*this, level, world, type, eyeForms, eye);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (i + ahead < all.size()) fetch(world.solids[all[i + ahead].solid]);
-      packing.add(all[i]);
-    }
-    packing.finish();
-  }
+  packing.finish();
 }
 
-std::byte* ListBuilder::Part::add(std::size_t kind, std::size_t bytes, const Head& head, ListLevel level) {
-  const ListLimits limit = limits(level);
-  const TileRange range(head.seen, limit.side);
+std::byte* ListBuilder::Part::add(std::size_t kind, std::size_t bytes, const ListHead& head, ListLevel level,
+                                  const TileLimits& limits) {
+  const auto side = static_cast<std::uint32_t>(level == wide ? grid_.wide * ListGrid::tile : ListGrid::tile);
+  const std::uint32_t across = level == wide ? grid_.wideAcross() : grid_.across;
+  const int shift = std::countr_zero(side);
+  const Footprint& f = head.seen;
+  const auto tile = [&](std::int32_t pixel) { return static_cast<std::uint32_t>(pixel) >> shift; };
+  const std::uint32_t x0 = tile(f.x0), y0 = tile(f.y0), x1 = tile(f.x1), y1 = tile(f.y1);
   auto& counts = tiles[level][kind];
   if (counts.empty())
     counts.assign(level == wide ? std::size_t{1} * grid_.wideAcross() * grid_.wideDown()
                                 : std::size_t{1} * grid_.across * grid_.down,
                   0);
   Arena& arena = found[level][kind];
-  std::byte* const start = arena.room((1 + range.count()) * sizeof(std::uint32_t) + bytes);
+  std::byte* const start = arena.room((1 + std::size_t{x1 - x0 + 1} * (y1 - y0 + 1)) * sizeof(std::uint32_t) + bytes);
   std::byte* to = start + sizeof(std::uint32_t);
   // No branches: a third of the tiles see nothing of what they lie beside.
-  std::uint32_t in = 0, nearest = limit.byTile ? head.seen.nearest : 0;
-  for (std::uint32_t y = range.y0; y <= range.y1; ++y)
-    for (std::uint32_t x = range.x0; x <= range.x1; ++x) {
-      const auto tile = static_cast<std::uint32_t>(y * limit.across + x);
-      const std::uint32_t bit = ((y - range.y0) * 2 + (x - range.x0)) & 31;
-      const std::uint32_t sees = ~(head.seen.misses >> bit) & (nearest <= (limit.byTile ? limit.byTile[tile] : 0)) & 1;
-      std::memcpy(to, &tile, sizeof tile);
-      to += sees * sizeof tile;
-      counts[tile] += sees, in += sees;
+  std::uint32_t in = 0;
+  for (std::uint32_t y = y0; y <= y1; ++y) {
+    const DepthCode* deepest = limits.row(y);
+    for (std::uint32_t x = x0; x <= x1; ++x) {
+      const std::uint32_t at = y * across + x, bit = ((y - y0) * 2 + (x - x0)) & 31;
+      const std::uint32_t sees = ~(std::uint32_t{f.misses} >> bit) & (f.nearest <= deepest[x]) & 1;
+      std::memcpy(to, &at, sizeof at);
+      to += sees * sizeof at;
+      counts[at] += sees, in += sees;
     }
+  }
   std::memcpy(start, &in, sizeof in);
-  if (in > 0) arena.take(static_cast<std::size_t>(to - start) + bytes), ++seen;
+  if (in > 0) arena.take(static_cast<std::size_t>(to - start) + bytes), listed.push_back(head.solid);
   return to;
 }
 

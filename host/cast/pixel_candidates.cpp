@@ -33,10 +33,8 @@ PixelCandidates::PixelCandidates(const Scene& scene, const Silhouette& silhouett
     for (std::size_t first = from; first < to; first += Footprints::block) {
       const std::size_t count = std::min(Footprints::block, to - first);
       for (std::size_t k = 0; k < count; ++k) shapes[k] = &solids[first + k].shape;
-      footprints.find(std::span(shapes).first(count));
-      for (std::size_t k = 0; k < count; ++k) {
-        const Footprint& f = footprints[k];
-        if (!f.seen()) continue;
+      footprints.find(std::span(shapes).first(count), [&](std::size_t k, const Footprint& f) {
+        if (!f.seen()) return;
         for (std::int32_t y = f.y0 / side; y <= f.y1 / side; ++y)
           for (std::int32_t x = f.x0 / side; x <= f.x1 / side; ++x)
             for (const std::uint32_t i : tiles[tileOf(x * side, y * side)]) {
@@ -45,12 +43,13 @@ PixelCandidates::PixelCandidates(const Scene& scene, const Silhouette& silhouett
               if (column >= f.x0 && column <= f.x1 && row >= f.y0 && row <= f.y1)
                 found[part].push_back({i, static_cast<std::uint32_t>(first + k)});
             }
-      }
+      });
     }
   };
   inParallel(found.size(), look, 1);
   for (const auto& of : found)
     for (const auto& [pixel, solid] : of) solids_[pixel].push_back(solid);
+  for (auto& of : solids_) std::sort(of.begin(), of.end());
 }
 
 }  // namespace solidcast

@@ -45,6 +45,13 @@ struct Measured {
   PixelRays rays{scene, width, height, 1};
   Footprints footprints{silhouette, region, eye.plain, RealType::f32, scale};
 
+  Footprint seen(const Shape& shape) {
+    const Shape* one = &shape;
+    Footprint found;
+    footprints.find(std::span(&one, 1), [&](std::size_t, const Footprint& f) { found = f; });
+    return found;
+  }
+
   /// Depth along the camera's forward axis, which is -z.
   std::optional<double> hit(const Shape& shape, int x, int y) const {
     const RayQ ray = rays.ray(x, y);
@@ -59,9 +66,7 @@ TEST(Footprints, HoldEveryPixelWhoseRayMeetsTheSolid) {
   const std::vector<Shape> all = solids(80);
   int hits = 0, missed = 0, without = 0;
   for (const Shape& shape : all) {
-    const Shape* one = &shape;
-    m.footprints.find(std::span(&one, 1));
-    const Footprint& f = m.footprints[0];
+    const Footprint f = m.seen(shape);
     without += !f.seen();
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
@@ -83,22 +88,32 @@ TEST(DepthBounds, AreLoweredOnlyWhereTheSolidIsHitAndNoNearerThanThat) {
   int hits = 0, lowered = 0;
   for (const Shape& shape : solids(80)) {
     const Shape* one = &shape;
-    m.footprints.find(std::span(&one, 1));
-    const Footprint f = m.footprints[0];
-    if (!f.seen() || f.hides == DepthScale::none) continue;
-    DepthBounds depths;
-    depths.start(m.region, width, (height + 3) / 4 * 4, 16);
-    depths.add(f, m.footprints.cover(0));
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) {
-        const auto depth = m.hit(shape, x, y);
-        hits += depth.has_value();
-        // Something there that begins just beyond is hidden.
-        if (!depths.hides({x, y, x, y, static_cast<DepthCode>(f.hides + 1), DepthScale::none, 0})) continue;
-        ++lowered;
-        ASSERT_TRUE(depth) << shape.index() << " " << x << " " << y;
-        EXPECT_LE(m.scale.ends(static_cast<float>(*depth)), f.hides) << shape.index() << " " << x << " " << y;
-      }
+    const Footprint f = m.seen(shape);
+    // The whole picture, then one of its parts.
+    for (const Crop& area : {Crop{0, 0, width, (height + 3) / 4 * 4}, Crop{24, 16, 32, 24}}) {
+      if (!f.seen() || f.x1 < area.x || f.x0 >= area.x + area.width || f.y1 < area.y || f.y0 >= area.y + area.height)
+        continue;
+      DepthBounds depths;
+      depths.start(area, width, height);
+      DepthCode hides = DepthScale::none;
+      m.footprints.findCovers(std::span(&one, 1), [&](std::size_t, const Footprint& g, const Cover& cover) {
+        hides = g.hides;
+        depths.add(within(g, 0, area), hides, cover);
+      });
+      if (hides == DepthScale::none) continue;
+      depths.noteTiles();
+      for (int y = area.y; y < std::min(area.y + area.height, height); ++y)
+        for (int x = area.x; x < area.x + area.width; ++x) {
+          const auto depth = m.hit(shape, x, y);
+          hits += depth.has_value();
+          // Something there that begins just beyond is hidden.
+          const Footprint behind{x, y, x, y, static_cast<DepthCode>(hides + 1), DepthScale::none, 0};
+          if (!depths.hides(within(behind, 1, area))) continue;
+          ++lowered;
+          ASSERT_TRUE(depth) << shape.index() << " " << x << " " << y;
+          EXPECT_LE(m.scale.ends(static_cast<float>(*depth)), hides) << shape.index() << " " << x << " " << y;
+        }
+    }
   }
   EXPECT_GT(lowered, 2000);
   EXPECT_GT(lowered, 0.9 * hits);

@@ -1,0 +1,107 @@
+#include "host/cast/list_sieve.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace solidcast {
+namespace {
+
+bool overlap(const Footprint& f, const Crop& area) {
+  return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
+}
+
+void fetch(const Shape& shape) {
+  const auto* at = reinterpret_cast<const char*>(&shape);
+  for (std::size_t line = 0; line < sizeof shape; line += 64) __builtin_prefetch(at + line);
+}
+
+}  // namespace
+
+bool worthSifting(std::span<const SolidEntry> solids, const Crop& region, RealType type, Footprints& footprints) {
+  const std::size_t step = solids.size() / 256 + 1, looked = (solids.size() + step - 1) / step;
+  const double share = 1.0 / looked * solids.size() / region.width / region.height;
+  double worth = 0;
+  std::array<const Shape*, Footprints::block> shapes;
+  for (std::size_t i = 0, count = 0; i < solids.size(); i += step) {
+    shapes[count++] = &solids[i].shape;
+    if (count < shapes.size() && i + step < solids.size()) continue;
+    footprints.findCovers(std::span(shapes).first(count), [&](std::size_t, const Footprint& f, const Cover& cover) {
+      if (!f.seen()) return;
+      const double layers = (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1) * share;
+      worth += layers / (cover.corners == 0 ? 4 : type == RealType::f32 ? 10 : 5);
+    });
+    count = 0;
+  }
+  return worth > 1;
+}
+
+void Sieve::sort(std::span<const std::vector<SeenWithin>* const> narrow) {
+  start_.fill(0);
+  std::size_t all = wides_.size();
+  const auto count = [&](const std::vector<SeenWithin>& solids) {
+    for (const SeenWithin& s : solids) ++start_[(s.nearest() >> shift) + 1u];
+  };
+  for (const auto* solids : narrow) count(*solids), all += solids->size();
+  count(wides_);
+  for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
+  sorted_.resize(all), origin_.resize(all);
+  std::uint32_t origin = 0;
+  const auto place = [&](const std::vector<SeenWithin>& solids) {
+    for (const SeenWithin& s : solids) {
+      const std::uint32_t to = start_[s.nearest() >> shift]++;
+      sorted_[to] = s, origin_[to] = origin++;
+    }
+  };
+  for (const auto* solids : narrow) place(*solids);
+  place(wides_);
+}
+
+void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* const> narrow,
+                 std::span<const std::span<const ListHead>> wides) {
+  DepthBounds& depths = patch.depths;
+  wides_.clear();
+  for (const auto& heads : wides)
+    for (const ListHead& head : heads)
+      if (head.seen.hides != DepthScale::none && overlap(head.seen, depths.area()))
+        wides_.push_back(within(head.seen, head.solid, depths.area()));
+  sort(narrow);
+  if (sorted_.empty()) return;
+  kept_.assign(sorted_.size() / 64 + 1, 0);
+  constexpr std::size_t together = Footprints::block;
+  std::array<std::uint32_t, 4 * together> places;
+  std::array<const Shape*, together> shapes;
+  std::array<std::uint32_t, together> covering;
+  for (std::size_t looked = 0; looked < sorted_.size();) {
+    if (sorted_[looked].nearest() >> shift << shift > depths.deepest()) break;  // and so are all others
+    const std::size_t seen = depths.visible(sorted_, together, places, looked);
+    std::size_t count = 0;
+    for (const std::uint32_t at : std::span(places).first(seen)) {
+      kept_[origin_[at] / 64] |= std::uint64_t{1} << origin_[at] % 64;
+      if (!sorted_[at].covers()) continue;
+      covering[count] = at;
+      fetch(*(shapes[count++] = &solids_[sorted_[at].solid].shape));
+    }
+    footprints_.findCovers(std::span(shapes).first(count), [&](std::size_t i, const Footprint& f, const Cover& cover) {
+      depths.add(sorted_[covering[i]], f.hides, cover);
+    });
+    depths.noteTiles();
+  }
+  std::size_t first = 0, list = 0;
+  for (std::size_t word = 0; word < kept_.size(); ++word)
+    for (std::uint64_t bits = kept_[word]; bits != 0; bits &= bits - 1) {
+      const std::size_t place = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
+      while (list < narrow.size() && place - first >= narrow[list]->size()) first += narrow[list++]->size();
+      if (list == narrow.size()) return;  // the rest are wide ones
+      patch.kept.push_back((*narrow[list])[place - first]);
+    }
+}
+
+void Sieve::siftKept(ListPatch& patch) {
+  places_.resize(patch.kept.size());
+  std::size_t looked = 0;
+  const std::size_t seen = patch.depths.visible(patch.kept, patch.kept.size() + 1, places_, looked);
+  for (std::size_t i = 0; i < seen; ++i) patch.kept[i] = patch.kept[places_[i]];
+  patch.kept.resize(seen);
+}
+
+}  // namespace solidcast

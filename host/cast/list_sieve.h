@@ -1,0 +1,59 @@
+// Which solids of a wide tile are hidden: looked at from the nearest on, each that covers something lowers the depths, and what
+// begins behind all depths where it is seen is not listed. In a crowd a few layers are gone through, and the rest is dropped
+// unseen when no pixel is left that is deep enough.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/cast/depth_bounds.h"
+#include "host/scene/world.h"
+
+namespace solidcast {
+
+/// A solid where it is seen in the region.
+struct ListHead {
+  Footprint seen;
+  std::uint32_t solid;
+};
+
+/// Whether looking for what is hidden pays, by a few hundred solids from all over the scene: from some 4 layers of rectangles
+/// of spheres on, 10 of polygons (each covers half of its rectangle and is drawn by its edges), 5 where a polygon's record
+/// takes extended precision.
+bool worthSifting(std::span<const SolidEntry> solids, const Crop& region, RealType type, Footprints& footprints);
+
+/// A wide tile's part of the picture.
+struct ListPatch {
+  DepthBounds depths;
+  std::vector<SeenWithin> kept;  // in the order of the solids
+};
+
+class Sieve {
+ public:
+  Sieve(std::span<const SolidEntry> solids, Footprints& footprints) : solids_(solids), footprints_(footprints) {}
+
+  /// Adds to the patch, which has been started, what is not hidden of `narrow`, lists in the order of the solids. `wides` hide as well, where they
+  /// are seen.
+  void sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* const> narrow,
+            std::span<const std::span<const ListHead>> wides);
+  /// Removes what has been hidden since it was kept.
+  void siftKept(ListPatch& patch);
+
+ private:
+  static constexpr int shift = 5;  // of depths that count as one: 128 an octave
+  static constexpr std::size_t buckets = std::size_t{1} << 16 >> shift;
+
+  void sort(std::span<const std::vector<SeenWithin>* const> narrow);
+
+  std::span<const SolidEntry> solids_;
+  Footprints& footprints_;
+  std::vector<SeenWithin> wides_;
+  std::vector<SeenWithin> sorted_;     // by depths where they begin, about
+  std::vector<std::uint32_t> origin_;  // of these: the place in all of `narrow`
+  std::vector<std::uint64_t> kept_;    // bits by that place
+  std::vector<std::uint32_t> places_;
+  std::array<std::uint32_t, buckets + 1> start_;
+};
+
+}  // namespace solidcast
