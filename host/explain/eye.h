@@ -31,7 +31,8 @@ class Eye {
     const N b = log_.stage("b = f.d", linear(f, d_));
     N q;
     if (log_.setting.farSphere) {
-      const V across = log_.stage("across = f - d b / |d|^2", f - d_ * (b / log_.squared));
+      const N inverse = log_.stage("1 / |d|^2", N(1) / log_.squared);
+      const V across = log_.stage("across = f - d b / |d|^2", f - d_ * (b * inverse));
       q = log_.stage("q = |d|^2 (r^2 - |across|^2)", log_.squared * (at(1, 3) - linear(across, across)));
     } else {
       q = log_.stage("q = b^2 - |d|^2 C", b * b - log_.squared * C);

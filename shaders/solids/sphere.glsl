@@ -7,7 +7,8 @@
 //        (|C| << |f|^2, where the numerator cancels) is given to the quadric's careful form by the host.
 //        fast, where some sphere of the scene is farther than 16 radii (FAR_SPHERES): b^2 and |d|^2 C are then nearly equal, and
 //        fp32 keeps nothing of q; by the vector from the centre to the ray, q = |d|^2 (r^2 - |f - d b / |d|^2|^2), it keeps
-//        all but 2^-21 |f| / r of it.
+//        all but 2^-21 |f| / r of it. (1 / |d|^2 is the ray's own, one division for all spheres: what it rounds shifts that
+//        vector along d, at right angles to it, and is squared away.)
 //        Rounding: |q^ - q| <= 32u |d|^2 (|f|^2 + |C|); s keeps 2^-28 where q >= 64u^2 2^56 |d|^2 |f|^2.
 // free   the same from c and r, with the cancelling numerator avoided: from inside t > 0 needs care on one side only.
 // naive  a t^2 + 2 b t + c = 0 by the schoolbook formula.
@@ -29,7 +30,8 @@ void sphere_eye(uint row, EyeRay ray, inout Best best) {
   real q = sub(mul(b, b), mul(ray.squared, f.w));
 #if ARITHMETIC == 0
   if (FAR_SPHERES) {
-    precise real3 across = f.xyz - ray.direction * (b / ray.squared);
+    precise real inverse = 1.0 / ray.squared;
+    precise real3 across = f.xyz - ray.direction * (b * inverse);
     q = mul(ray.squared, sub(more.w, linear(across, across)));
   }
 #endif
