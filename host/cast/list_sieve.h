@@ -18,9 +18,7 @@ struct ListHead {
   std::uint32_t solid;
 };
 
-/// Whether looking for what is hidden pays, by a few hundred solids from all over the scene: from some 4 layers of rectangles
-/// of spheres on, 10 of polygons (each covers half of its rectangle and is drawn by its edges), 5 where a polygon's record
-/// takes extended precision.
+/// Whether looking for what is hidden pays, by a few hundred solids from all over the scene.
 bool worthSifting(std::span<const SolidEntry> solids, const Crop& region, RealType type, Footprints& footprints);
 
 /// A wide tile's part of the picture.
