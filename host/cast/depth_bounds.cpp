@@ -215,7 +215,7 @@ SeenWithin within(const Footprint& f, std::uint32_t solid, const Crop& area) {
   };
   // Of 2x2 tiles, what is left of them where the area begins after the first.
   const int right = f.x0 / side < area.x / side, lower = f.y0 / side < area.y / side;
-  const std::uint32_t misses = f.misses >> (right + 2 * lower) & (right ? 5 : 15), covers = f.hides != DepthScale::none;
+  const std::uint32_t misses = f.misses >> (right + 2 * lower), covers = f.hides != DepthScale::none;
   return {pixel(std::max(f.x0 - area.x, 0), std::max(f.y0 - area.y, 0)),
           pixel(std::min(f.x1 - area.x, area.width - 1), std::min(f.y1 - area.y, area.height - 1)),
           covers << 24 | misses << 16 | f.nearest, solid};

@@ -7,8 +7,9 @@
 #include <map>
 #include <random>
 
-#include "host/cast/depth_bounds.h"
+#include "host/cast/list_sieve.h"
 #include "host/cast/record_batch.h"
+#include "host/scene/build.h"
 #include "host/scene/random.h"
 
 namespace solidcast {
@@ -36,14 +37,24 @@ std::vector<Shape> solids(int each) {
   return all;
 }
 
+bool meet(const Footprint& f, const Crop& area) {
+  return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
+}
+
 struct Measured {
   Scene scene = randomScene("sphere", 1, 1);  // for its camera
   Silhouette silhouette{scene, width, height, 1};
   EyeFrames eye{eyeFrame(scene, RealType::f32)};
   DepthScale scale{30};
   Crop region{0, 0, width, height};
-  PixelRays rays{scene, width, height, 1};
+  std::vector<RayQ> rays;  // of the pixels
   Footprints footprints{silhouette, region, eye.plain, RealType::f32, scale};
+
+  Measured() {
+    const PixelRays of(scene, width, height, 1);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) rays.push_back(of.ray(x, y));
+  }
 
   Footprint seen(const Shape& shape) {
     const Shape* one = &shape;
@@ -54,7 +65,7 @@ struct Measured {
 
   /// Depth along the camera's forward axis, which is -z.
   std::optional<double> hit(const Shape& shape, int x, int y) const {
-    const RayQ ray = rays.ray(x, y);
+    const RayQ& ray = rays[static_cast<std::size_t>(y * width + x)];
     const Cut c = std::visit([&](const auto& solid) { return cut(solid, ray); }, shape);
     if (!c.hit || c.t <= 0) return std::nullopt;
     return static_cast<double>(-c.t * ray.direction.z);
@@ -117,6 +128,86 @@ TEST(DepthBounds, AreLoweredOnlyWhereTheSolidIsHitAndNoNearerThanThat) {
   }
   EXPECT_GT(lowered, 2000);
   EXPECT_GT(lowered, 0.9 * hits);
+}
+
+TEST(SeenWithin, HasWhatIsSeenInItsPartOfThePicture) {
+  Measured m;
+  int missed = 0, hits = 0;
+  for (const Shape& shape : solids(80)) {
+    const Footprint f = m.seen(shape);
+    for (const Crop& area : {Crop{0, 0, 32, 16}, Crop{32, 0, 40, 16}, Crop{0, 16, 32, 40}, Crop{32, 16, 40, 40}}) {
+      if (!f.seen() || !meet(f, area)) continue;
+      const SeenWithin s = within(f, 7, area);
+      EXPECT_EQ(s.solid, 7u);
+      EXPECT_EQ(s.nearest(), f.nearest);
+      missed += s.misses() != 0;
+      for (int y = area.y; y < std::min(area.y + area.height, height); ++y)
+        for (int x = area.x; x < area.x + area.width; ++x) {
+          if (!m.hit(shape, x, y)) continue;
+          ++hits;
+          const int left = x - area.x, top = y - area.y;
+          ASSERT_TRUE(left >= s.x0() && left <= s.x1() && top >= s.y0() && top <= s.y1()) << shape.index();
+          const int tile = (top / 4 - s.y0() / 4) * 2 + left / 4 - s.x0() / 4;
+          EXPECT_FALSE(s.misses() != 0 && s.misses() >> tile & 1) << shape.index() << " " << x << " " << y;
+        }
+    }
+  }
+  EXPECT_GT(hits, 3000);
+  EXPECT_GT(missed, 20);
+}
+
+/// Of a crowd, half of it behind a wall: no pixel's nearest solid is dropped, and most of what is hidden is.
+TEST(Sieve, KeepsWhatIsNearestInSomePixel) {
+  Measured m;
+  World world;
+  std::mt19937_64 bits(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int i = 0; i < 600; ++i) {
+    const Triple at = {12 * uniform(bits), 9 * uniform(bits), 10 * uniform(bits)};
+    if (i % 3 == 0) addSolid(world, Sphere{at, 0.4 + 0.3 * uniform(bits)});
+    else if (i % 3 == 1) addSolid(world, Triangle{at, {at[0] + 1.5, at[1], at[2]}, {at[0], at[1] + 1.5, at[2] + 1}});
+    else addSolid(world, AABox{at, {at[0] + 0.5, at[1] + 0.5, at[2] + 0.5}});
+  }
+  addSolid(world, Quad{{-14, -6, 3}, {28, 0, 0.5}, {0, 12, 0}});  // in several patches
+  for (const Crop& area : {Crop{0, 0, 64, 56}, Crop{16, 16, 32, 24}}) {
+    ListPatch patch;
+    patch.depths.start(area, width, height);
+    std::vector<SeenWithin> first, second;
+    std::vector<ListHead> wide;
+    std::vector<Footprint> seen;
+    for (std::uint32_t i = 0; i < world.solids.size(); ++i) {
+      const Footprint f = seen.emplace_back(m.seen(world.solids[i].shape));
+      if (!f.seen() || !meet(f, area)) continue;
+      if (i + 1 == world.solids.size()) wide.push_back({f, i});
+      else (i < 200 ? first : second).push_back(within(f, i, area));
+    }
+    Sieve sieve(world.solids, m.footprints);
+    const std::vector<SeenWithin>* lists[] = {&first, &second};
+    const std::span<const ListHead> wides[] = {wide};
+    sieve.sift(patch, lists, wides);
+    sieve.siftKept(patch);
+    EXPECT_LT(patch.kept.size(), (first.size() + second.size()) * 2 / 3);
+    EXPECT_TRUE(std::is_sorted(patch.kept.begin(), patch.kept.end(),
+                               [](const SeenWithin& a, const SeenWithin& b) { return a.solid < b.solid; }));
+    int hits = 0;
+    for (int y = area.y; y < std::min(area.y + area.height, height); ++y)
+      for (int x = area.x; x < area.x + area.width; ++x) {
+        std::uint32_t nearest = 0;
+        double least = 1e300;
+        for (std::uint32_t i = 0; i < world.solids.size(); ++i) {
+          const Footprint& f = seen[i];
+          if (x < f.x0 || x > f.x1 || y < f.y0 || y > f.y1) continue;
+          if (const auto depth = m.hit(world.solids[i].shape, x, y); depth && *depth < least)
+            least = *depth, nearest = i;
+        }
+        if (least == 1e300 || nearest + 1 == world.solids.size()) continue;
+        ++hits;
+        EXPECT_TRUE(
+            std::any_of(patch.kept.begin(), patch.kept.end(), [&](const SeenWithin& s) { return s.solid == nearest; }))
+            << nearest << " at " << x << " " << y;
+      }
+    EXPECT_GT(hits, 200);
+  }
 }
 
 TEST(DepthScale, AGreaterCodeIsOfAGreaterDepth) {

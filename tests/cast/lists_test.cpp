@@ -94,6 +94,15 @@ TEST_F(Lists, WhatIsHiddenIsLeftOutAndNotMissed) {
   }
 }
 
+/// More than are sifted at a time: what the first ones hide is dropped of the later at once.
+TEST_F(Lists, OfMoreSolidsThanARoundTakes) {
+  Scene scene = randomScene("sphere", 180000, 12);
+  std::get<PerspectiveCamera>(scene.camera).center = {0, 0, 45};
+  const Band all = picture(scene, small(), {.method = Method::fast, .plan = Plan::storage});
+  expectSame(picture(scene, small(), {.method = Method::fast, .plan = Plan::lists}), all, "180000 spheres");
+  EXPECT_GT(hits(all), 100u);
+}
+
 /// Walls that fill the picture, one behind the other and slanted: they are in wide tiles, and hide each other there.
 TEST_F(Lists, WallsHideWallsAndWhatIsBehindThem) {
   Scene scene = randomScene("sphere", 3000, 9);
