@@ -100,11 +100,11 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
   const DepthScale scale(canHide ? static_cast<float>(hasUnit ? frame.unit : eyeFrame(scene, RealType::f32).unit)
                                  : 1.f);
   const auto footprints = [&] { return Footprints(silhouette, grid.region, eye.plain, type, scale); };
-  bool hiding = canHide;
-  if (canHide) {
-    auto some = footprints();
-    hiding = worthSifting(world.solids, grid.region, type, some);
-  }
+  auto some = footprints();
+  const ListSample sample(world.solids, some);
+  const double left = canHide ? partLeft(sample, grid.region, type) : 1;
+  const bool hiding = left < 1;
+  chooseWide(grid_, sample, left);
   tileLimits_.start(static_cast<std::size_t>(grid_.across), static_cast<std::size_t>(grid_.down));
   wideLimits_.start(static_cast<std::size_t>(grid_.wideAcross()), static_cast<std::size_t>(grid_.wideDown()));
   patches_.resize(hiding ? static_cast<std::size_t>(grid_.wideAcross() * grid_.wideDown()) : 0);
@@ -113,12 +113,12 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
   workers_.run(static_cast<int>(threads), [&](int at) {
     const auto t = static_cast<std::size_t>(at);
     Part& part = *parts_[t];
-    for (std::size_t k = t; k < parts_.size(); k += threads) parts_[k]->start(grid);
+    for (std::size_t k = t; k < parts_.size(); k += threads) parts_[k]->start(grid_);
     auto own = footprints();
     if (hiding) sift(t, threads, packs, rounds, own);
     else part.look(world.solids, solids * t / threads, solids * (t + 1) / threads, own);
     part.pack(part.heads[narrow], narrow, tileLimits_, world, type, eyeForms, eye);
-    const auto wideTile = [&](int pixel) { return static_cast<std::uint32_t>(pixel / (grid.wide * ListGrid::tile)); };
+    const auto wideTile = [&](int pixel) { return static_cast<std::uint32_t>(pixel / (grid_.wide * ListGrid::tile)); };
     std::erase_if(part.heads[wide], [&](const ListHead& head) {
       const Footprint& f = head.seen;
       return !wideLimits_.some(wideTile(f.x0), wideTile(f.y0), wideTile(f.x1), wideTile(f.y1), f.nearest);

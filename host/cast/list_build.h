@@ -23,7 +23,9 @@ struct ListGrid {
   static constexpr int tile = Footprints::tile;
   Crop region;               // in pixels of the whole image
   int across = 0, down = 0;  // tiles; the planes' padding is covered as well
+  // Chosen by collect():
   int wide = 16;
+  std::uint64_t most = 256;  // a solid in more tiles is in wide ones alone
   int wideAcross() const { return (across + wide - 1) / wide; }
   int wideDown() const { return (down + wide - 1) / wide; }
   /// A wide tile's pixels, counted from the region's corner.

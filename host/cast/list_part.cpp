@@ -20,20 +20,27 @@ constexpr std::uint32_t rowsOfKind[kindCount][2] = {
 #include "shaders/solids.def"
 #undef SOLID
 
-/// Solids in more tiles than this go to the wide ones.
-constexpr int mostTiles = 256;
-
 void fetch(const SolidEntry& solid) {
   const auto* at = reinterpret_cast<const char*>(&solid.shape);
   for (std::size_t line = 0; line < sizeof solid.shape; line += 64) __builtin_prefetch(at + line);
 }
 
-ListLevel levelOf(const Footprint& f) {
-  const auto tiles = [](std::int32_t first, std::int32_t last) {
-    constexpr std::uint32_t side = ListGrid::tile;
+std::uint64_t tilesOf(const Footprint& f, std::uint32_t side) {
+  const auto of = [side](std::int32_t first, std::int32_t last) {
     return std::uint64_t{static_cast<std::uint32_t>(last) / side - static_cast<std::uint32_t>(first) / side + 1};
   };
-  return tiles(f.x0, f.x1) * tiles(f.y0, f.y1) > mostTiles ? wide : narrow;
+  return of(f.x0, f.x1) * of(f.y0, f.y1);
+}
+
+/// A solid in many tiles is not copied to each where it fills the wide tiles it lies in: all their tiles walk it. Where it
+/// does not, copies cost less, up to so many.
+ListLevel levelOf(const Footprint& f, const ListGrid& grid) {
+  constexpr std::uint64_t few = 256;
+  const std::uint64_t own = tilesOf(f, ListGrid::tile);
+  if (own <= few) return narrow;
+  const auto across = static_cast<std::uint32_t>(grid.wide);
+  const std::uint64_t walked = tilesOf(f, across * ListGrid::tile) * across * across;
+  return own <= grid.most && 2 * walked > 3 * own ? narrow : wide;
 }
 
 std::uint32_t numberAt(const std::byte* at) {
@@ -69,6 +76,35 @@ void writeRows(std::span<const std::byte> from, std::uint32_t rowCount, std::byt
 }  // namespace
 
 std::uint32_t rowsOf(std::size_t kind, bool eyeForms) { return rowsOfKind[kind][eyeForms]; }
+
+void chooseWide(ListGrid& grid, const ListSample& sample, double left) {
+  // ns of all threads: to copy a record to a tile, to walk it there; to sift a solid in a wide tile.
+  constexpr double copying = 8, walking = 14, sifting = 60, recordBytes = 80, mostBytes = 128 << 20;
+  const std::uint64_t tiles = std::uint64_t{1} * grid.across * grid.down;
+  ListGrid best = grid;
+  double least = 0;
+  bool some = false;
+  for (grid.wide = 16;; grid.wide *= 2) {
+    const auto side = static_cast<std::uint64_t>(grid.wide);
+    for (const std::uint64_t most : {std::uint64_t{256}, std::max<std::uint64_t>(256, tiles / 32)}) {
+      grid.most = most;
+      double copies = 0, walked = 0, sifted = 0;
+      for (const auto& one : sample.all) {
+        const std::uint64_t own = tilesOf(one.seen, ListGrid::tile);
+        const std::uint64_t wides = tilesOf(one.seen, static_cast<std::uint32_t>(side * ListGrid::tile));
+        const bool isWide = levelOf(one.seen, grid) == wide;
+        copies += static_cast<double>(isWide ? wides : own);
+        walked += static_cast<double>(isWide ? wides * side * side : own);
+        sifted += static_cast<double>(wides);
+      }
+      const double ns = left * (copying * copies + walking * walked) + (left < 1 ? sifting * sifted : 0);
+      const bool fits = left * copies * sample.each * recordBytes < mostBytes;
+      if (fits ? !some || ns < least : !some) best = grid, least = ns, some = fits;
+    }
+    if (std::uint64_t{1} * grid.wideAcross() * grid.wideDown() <= 256) break;
+  }
+  grid = best;
+}
 
 void ListBuilder::Part::start(const ListGrid& grid) {
   grid_ = grid;
@@ -144,7 +180,7 @@ void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t fro
   forEachBlock(solids, from, to, [&](std::span<const Shape* const> shapes, std::uint32_t first) {
     footprints.find(shapes, [&](std::size_t i, const Footprint& f) {
       if (!f.seen()) return;
-      ListHead& head = heads[levelOf(f)].emplace_back();
+      ListHead& head = heads[levelOf(f, grid_)].emplace_back();
       head.seen = f, head.solid = first + static_cast<std::uint32_t>(i);
     });
   });
@@ -162,7 +198,7 @@ void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::si
     const auto anywhere = [&](std::size_t i, const Footprint& f) {
       if (!f.seen()) return;
       const std::uint32_t solid = first + static_cast<std::uint32_t>(i);
-      if (levelOf(f) == wide) return heads[wide].push_back({f, solid});
+      if (levelOf(f, grid_) == wide) return heads[wide].push_back({f, solid});
       for (std::int32_t y = f.y0 >> shift; y <= f.y1 >> shift; ++y)
         for (std::int32_t x = f.x0 >> shift; x <= f.x1 >> shift; ++x) {
           const auto at = static_cast<std::size_t>(y * across + x);

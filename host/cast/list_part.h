@@ -17,6 +17,10 @@ enum ListLevel : std::size_t { narrow, wide };
 /// Rows of a kind's record: for one eye, or of the solid itself, for rays that are free.
 std::uint32_t rowsOf(std::size_t kind, bool eyeForms);
 
+/// Sets the grid's wide tiles and `most` to what costs least of what takes no more than 128 MiB for copies of records, if that
+/// can be. `left`: the part of the solids that is to be listed; 1: none are sifted out.
+void chooseWide(ListGrid& grid, const ListSample& sample, double left);
+
 /// Bytes at the end of which more are put, without being cleared first.
 class Arena {
  public:

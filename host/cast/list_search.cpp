@@ -73,7 +73,6 @@ void ListSearch::build(const PassTarget& target, const Band& band, int firstRow,
   ListGrid grid;
   grid.region = {job_.crop.x, job_.crop.y + band.firstRow + firstRow, band.width, std::min(rows, band.rows - firstRow)};
   grid.across = target.stride / ListGrid::tile, grid.down = rows / ListGrid::tile;
-  while (std::int64_t{grid.wideAcross()} * grid.wideDown() > 256) grid.wide *= 2;
   builder_.collect(*scene_, eye_, program_.real, program_.eye(), *silhouette_, grid);
   for (std::size_t k = 0; k < kindCount; ++k) kinds_[k] = kinds_[k] || builder_.kinds()[k];
   const bool exact = program_.method == Method::exact;

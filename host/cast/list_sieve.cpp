@@ -18,35 +18,43 @@ void fetch(const Shape& shape) {
 
 }  // namespace
 
-/// With L layers of what hides, of all solids a part (1 - exp -L) / L is seen. Of a polygon, seen at all angles and drawn
-/// without its rim, an eighth of the rectangle counts; of a sphere, as much of it as a circle fills.
-/// ns of all threads, measured (docs/performance-notes.md): what looking takes, and what one that is left out saves.
-bool worthSifting(std::span<const SolidEntry> solids, const Crop& region, RealType type, Footprints& footprints) {
-  constexpr double ofSphere = 0.78, ofPolygon = 0.12;
-  constexpr double lookingAtSphere = 55, lookingAtPolygon = 110, lookingAtOther = 25;
-  const bool single = type == RealType::f32;
-  const double ofTile = single ? 22 : 50, ofRecord = single ? 20 : 1000, ofOtherRecord = single ? 200 : 1000;
-  const std::size_t step = solids.size() / 256 + 1, looked = (solids.size() + step - 1) / step;
-  double layers = 0, looking = 0, listing = 0;
+ListSample::ListSample(std::span<const SolidEntry> solids, Footprints& footprints) {
+  const std::size_t step = solids.size() / 256 + 1;
   std::array<const Shape*, Footprints::block> shapes;
   for (std::size_t i = 0, count = 0; i < solids.size(); i += step) {
     shapes[count++] = &solids[i].shape;
     if (count < shapes.size() && i + step < solids.size()) continue;
     footprints.find(std::span(shapes).first(count), [&](std::size_t at, const Footprint& f) {
-      if (!f.seen()) return;
-      constexpr double side = Footprints::tile;
-      const double width = f.x1 - f.x0 + 1, height = f.y1 - f.y0 + 1;
-      const bool sphere = std::holds_alternative<Sphere>(*shapes[at]);
-      const bool polygon = std::holds_alternative<Triangle>(*shapes[at]) || std::holds_alternative<Quad>(*shapes[at]);
-      if (f.hides != DepthScale::none) layers += width * height * (sphere ? ofSphere : ofPolygon);
-      looking += sphere ? lookingAtSphere : polygon ? lookingAtPolygon : lookingAtOther;
-      listing += ((width - 1) / side + 1) * ((height - 1) / side + 1) * ofTile;
-      listing += sphere || polygon ? ofRecord : ofOtherRecord;
+      if (f.seen()) all.push_back({f, shapes[at]});
     });
     count = 0;
   }
-  layers *= double(solids.size()) / looked / region.width / region.height;
-  return layers > 0 && listing * (1 - (1 - std::exp(-layers)) / layers) > looking;
+  each = double(step);
+}
+
+/// With L layers of what hides, of all solids a part (1 - exp -L) / L is seen. Of a polygon, seen at all angles and drawn
+/// without its rim, an eighth of the rectangle counts; of a sphere, as much of it as a circle fills.
+/// ns of all threads, measured (docs/performance-notes.md): what looking takes, and what one that is left out saves.
+double partLeft(const ListSample& sample, const Crop& region, RealType type) {
+  constexpr double ofSphere = 0.78, ofPolygon = 0.12;
+  constexpr double lookingAtSphere = 55, lookingAtPolygon = 110, lookingAtOther = 25;
+  const bool single = type == RealType::f32;
+  const double ofTile = single ? 22 : 50, ofRecord = single ? 20 : 1000, ofOtherRecord = single ? 200 : 1000;
+  double layers = 0, looking = 0, listing = 0;
+  for (const auto& [f, shape] : sample.all) {
+    constexpr double side = Footprints::tile;
+    const double width = f.x1 - f.x0 + 1, height = f.y1 - f.y0 + 1;
+    const bool sphere = std::holds_alternative<Sphere>(*shape);
+    const bool polygon = std::holds_alternative<Triangle>(*shape) || std::holds_alternative<Quad>(*shape);
+    if (f.hides != DepthScale::none) layers += width * height * (sphere ? ofSphere : ofPolygon);
+    looking += sphere ? lookingAtSphere : polygon ? lookingAtPolygon : lookingAtOther;
+    listing += ((width - 1) / side + 1) * ((height - 1) / side + 1) * ofTile;
+    listing += sphere || polygon ? ofRecord : ofOtherRecord;
+  }
+  layers *= sample.each / region.width / region.height;
+  if (layers <= 0) return 1;
+  const double left = (1 - std::exp(-layers)) / layers;
+  return listing * (1 - left) > looking ? left : 1;
 }
 
 void Sieve::sort(std::span<const std::vector<SeenWithin>* const> narrow) {

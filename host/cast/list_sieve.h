@@ -18,8 +18,20 @@ struct ListHead {
   std::uint32_t solid;
 };
 
-/// Whether looking for what is hidden pays, by a few hundred solids from all over the scene.
-bool worthSifting(std::span<const SolidEntry> solids, const Crop& region, RealType type, Footprints& footprints);
+/// A few hundred solids from all over a scene, those of them that are seen.
+struct ListSample {
+  ListSample(std::span<const SolidEntry> solids, Footprints& footprints);
+
+  struct One {
+    Footprint seen;
+    const Shape* shape;
+  };
+  std::vector<One> all;
+  double each = 1;  // so many solids are there for one of these
+};
+
+/// The part of the solids that is left where looking for what is hidden pays, about; 1: it does not.
+double partLeft(const ListSample& sample, const Crop& region, RealType type);
 
 /// A wide tile's part of the picture.
 struct ListPatch {

@@ -103,6 +103,29 @@ TEST_F(Lists, OfMoreSolidsThanARoundTakes) {
   EXPECT_GT(hits(all), 100u);
 }
 
+/// Solids of some hundred tiles each, some in wide ones: what is seen does not depend on where they are listed.
+TEST_F(Lists, OfLargePicturesWithSolidsOfEverySize) {
+  RenderJob job = small();
+  job.width = 1200, job.height = 900, job.crop = {0, 0, 1200, 900};
+  for (const char* kind : {"sphere", "disc", "mixed"}) {
+    Scene scene = randomScene(kind, 200, 21);
+    addSolid(scene.world, Sphere{{0, 0, 21}, 1.5});
+    addSolid(scene.world, Disc{{2, 1, 24}, {0.1, 0.2, 1}, 2});
+    const Band all = picture(scene, job, {.method = Method::fast, .plan = Plan::storage});
+    expectSame(picture(scene, job, {.method = Method::fast, .plan = Plan::lists}), all, kind);
+    EXPECT_GT(hits(all), 100000u) << kind;
+  }
+  // A crowd of larger ones, whose wide tiles are larger; some of it in front of what fills the picture and some behind.
+  job.width = 2048, job.height = 1536, job.crop = {0, 0, 2048, 1536};
+  Scene scene = randomScene("sphere", 3000, 22);
+  addSolid(scene.world, Sphere{{0, 0, -40}, 42});
+  for (int i = 0; i < 30; ++i) addSolid(scene.world, Sphere{{0.1 * i, 0, -70.0 - 2 * i}, 60});
+  const Band all = picture(scene, job, {.method = Method::fast, .plan = Plan::tiles});
+  CastStats stats;
+  expectSame(picture(scene, job, {.method = Method::fast, .plan = Plan::lists}, &stats), all, "crowd");
+  EXPECT_LT(listed(stats), 2500);
+}
+
 /// Walls that fill the picture, one behind the other and slanted: they are in wide tiles, and hide each other there.
 TEST_F(Lists, WallsHideWallsAndWhatIsBehindThem) {
   Scene scene = randomScene("sphere", 3000, 9);
