@@ -56,7 +56,7 @@ struct ListBuilder::Part {
   std::vector<std::uint32_t> listed;  // solids, some more than once
 
   void start(const ListGrid& grid);
-  /// Where each solid is seen, but for those that `limits` hide; to heads.
+  /// Where each solid is seen; to heads.
   void look(std::span<const SolidEntry> solids, std::size_t from, std::size_t to, Footprints& footprints);
   /// The same; to seenIn, but for the wide ones, and without those that `limits` hide.
   void lookForSieve(std::span<const SolidEntry> solids, std::size_t from, std::size_t to, Footprints& footprints,

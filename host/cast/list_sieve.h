@@ -43,8 +43,8 @@ class Sieve {
  public:
   Sieve(std::span<const SolidEntry> solids, Footprints& footprints) : solids_(solids), footprints_(footprints) {}
 
-  /// Adds to the patch, which has been started, what is not hidden of `narrow`, lists in the order of the solids. `wides` hide as well, where they
-  /// are seen.
+  /// Adds to the patch, which has been started, what is not hidden of `narrow`, lists in the order of the solids. `wides`
+  /// hide as well, where they are seen.
   void sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* const> narrow,
             std::span<const std::span<const ListHead>> wides);
   /// Removes what has been hidden since it was kept.
