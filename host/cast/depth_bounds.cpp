@@ -44,8 +44,8 @@ inline std::int32_t place(T at, T all) {
   return static_cast<std::int32_t>(least(all, most(T(0), at + T(0.5))));
 }
 
-/// Lowers what `spans` say of the eight rows from `row` on, which may be more than there are. Where a span ends within a vector,
-/// the rest of it keeps what it has.
+/// Lowers what `spans` say of the eight rows from `row` on, which may be more than there are. Where a span ends within a
+/// vector, the rest of it keeps what it has.
 inline __attribute__((always_inline)) void lower(const Area& area, int row, const Spans& spans) {
   constexpr Places lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   DepthCode* to = area.to + row * area.stride;
@@ -74,6 +74,7 @@ struct Ellipse {
 };
 WIDE void lowerEllipse(const Area& area, const Ellipse& e) {
   const double less = (e.wide + e.high) * 0x1p-19;
+  if (e.high <= less || e.wide <= less) return;  // pixels a thousand times as long as wide
   const auto x = static_cast<float>(e.x), y = static_cast<float>(e.y - 0.5), width = static_cast<float>(area.width);
   const auto wide = static_cast<float>(e.wide - less), each = static_cast<float>(1 / (e.high - less));
   for (int row = 0; row < area.height; row += eight) {

@@ -39,8 +39,9 @@ struct ListBuilder::Rounds {
   std::atomic<std::size_t> next = 0;  // patch, of all rounds
 };
 
-/// A round's solids are looked at by shares, then what is seen of them by patches, so that each of the threads writes what is its
-/// own. Few solids are one round; of many those of later rounds are dropped at once where the earlier hide them.
+/// A round's solids are looked at by shares, then what is seen of them by patches, so that each of the threads writes
+/// what is its own. Few solids are one round; of many those of later rounds are dropped at once where the earlier hide
+/// them.
 void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds,
                        Footprints& footprints) {
   constexpr std::size_t firstRound = 131072;
