@@ -20,11 +20,6 @@ constexpr std::uint32_t rowsOfKind[kindCount][2] = {
 #include "shaders/solids.def"
 #undef SOLID
 
-void fetch(const SolidEntry& solid) {
-  const auto* at = reinterpret_cast<const char*>(&solid.shape);
-  for (std::size_t line = 0; line < sizeof solid.shape; line += 64) __builtin_prefetch(at + line);
-}
-
 std::uint64_t tilesOf(const Footprint& f, std::uint32_t side) {
   const auto of = [side](std::int32_t first, std::int32_t last) {
     return std::uint64_t{static_cast<std::uint32_t>(last) / side - static_cast<std::uint32_t>(first) / side + 1};
@@ -310,7 +305,7 @@ void ListBuilder::Part::pack(std::span<const ListHead> heads, ListLevel level, c
   constexpr std::size_t ahead = 8;
   Packing packing(*this, level, limits, world, type, eyeForms, eye);
   for (std::size_t i = 0; i < heads.size(); ++i) {
-    if (i + ahead < heads.size()) fetch(world.solids[heads[i + ahead].solid]);
+    if (i + ahead < heads.size()) fetch(world.solids[heads[i + ahead].solid].shape);
     packing.add(heads[i]);
   }
   packing.finish();

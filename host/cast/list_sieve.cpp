@@ -11,11 +11,6 @@ bool overlap(const Footprint& f, const Crop& area) {
   return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
 }
 
-void fetch(const Shape& shape) {
-  const auto* at = reinterpret_cast<const char*>(&shape);
-  for (std::size_t line = 0; line < sizeof shape; line += 64) __builtin_prefetch(at + line);
-}
-
 }  // namespace
 
 ListSample::ListSample(std::span<const SolidEntry> solids, Footprints& footprints) {
