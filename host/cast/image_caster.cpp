@@ -25,6 +25,7 @@ struct ImageCaster::Impl {
   CastStats stats;
   std::vector<std::unique_ptr<Pass>> passes;
   int bandRows = 0;
+  Band band;  // kept, so that its memory serves the next
   bool customSolids = false, customColours = false;  // what the passes were made for
 
   const CastOptions options;  // passes refer to it
@@ -93,7 +94,6 @@ struct ImageCaster::Impl {
 
   void forEachBand(const std::function<void(Band&)>& f) {
     for (int first = 0; first < crop.height; first += bandRows) {
-      Band band;
       band.firstRow = first;
       band.rows = std::min(bandRows, crop.height - first);
       band.width = crop.width;

@@ -3,11 +3,34 @@
 #include <algorithm>
 #include <atomic>
 #include <barrier>
+#include <bit>
 #include <cstring>
 
 #include "host/cast/list_part.h"
+#include "host/cast/wide.h"
 
 namespace solidcast {
+namespace {
+
+// Of all tiles, one after the other.
+WIDE void addTo(std::uint32_t* sums, const std::uint32_t* counts, std::size_t tiles) {
+  for (std::size_t i = 0; i < tiles; ++i) sums[i] += counts[i];
+}
+/// A part's counts become where its rows begin, after `next`, which goes on to where they end.
+WIDE void place(std::uint32_t* counts, std::uint32_t* next, std::uint32_t rows, std::size_t tiles) {
+  for (std::size_t i = 0; i < tiles; ++i) {
+    const std::uint32_t entries = counts[i];
+    counts[i] = next[i];
+    next[i] += entries * rows;
+  }
+}
+WIDE std::uint32_t mostOf(const std::uint32_t* counts, std::size_t tiles) {
+  std::uint32_t most = 0;
+  for (std::size_t i = 0; i < tiles; ++i) most = std::max(most, counts[i]);
+  return most;
+}
+
+}  // namespace
 
 ListBuilder::ListBuilder() {
   for (unsigned t = 0; t < workers_.threads(); ++t) parts_.push_back(std::make_unique<Part>());
@@ -159,6 +182,7 @@ void ListBuilder::layOut() {
       auto& first = first_[level][kind];
       auto& count = count_[level][kind];
       first.clear(), count.clear();
+      const std::uint32_t rows = rowsOf(kind, eyeForms_);
       std::vector<std::uint32_t*> counts;
       std::size_t size = 0;
       for (const auto& part : parts_)
@@ -166,19 +190,16 @@ void ListBuilder::layOut() {
       if (counts.empty()) continue;
       kinds_[kind] = true;
       wideOnes_ = wideOnes_ || level == wide;
-      first.resize(size), count.resize(size);
+      count.assign(counts[0], counts[0] + size);
+      for (std::size_t i = 1; i < counts.size(); ++i) addTo(count.data(), counts[i], size);
+      first.resize(size);
       for (std::size_t tile = 0; tile < size; ++tile) {
         first[tile] = static_cast<std::uint32_t>(row);
-        std::uint32_t here = 0;
-        for (std::uint32_t* of : counts) {
-          const std::uint32_t entries = of[tile];
-          of[tile] = static_cast<std::uint32_t>(row);
-          row += std::size_t{entries} * rowsOf(kind, eyeForms_);
-          here += entries;
-        }
-        count[tile] = here;
-        if (level == narrow) total_[tile] += here;
+        row += std::size_t{count[tile]} * rows;
       }
+      next_ = first;
+      for (std::uint32_t* of : counts) place(of, next_.data(), rows, size);
+      if (level == narrow) addTo(total_.data(), count.data(), size);
       if (level == wide)
         for (std::size_t tile = 0, y = 0; y < static_cast<std::size_t>(grid_.down); ++y)
           for (std::size_t x = 0; x < static_cast<std::size_t>(grid_.across); ++x, ++tile)
@@ -189,7 +210,7 @@ void ListBuilder::layOut() {
 
 /// Longest first, so that the lanes of a vector end together and the last workgroups are short.
 void ListBuilder::sortTiles() {
-  constexpr std::uint32_t most = 4095;
+  const std::uint32_t most = std::min(4095u, mostOf(total_.data(), total_.size()));
   std::vector<std::uint32_t> start(most + 2, 0);
   for (const std::uint32_t entries : total_) ++start[most - std::min(entries, most) + 1];
   for (std::size_t i = 0; i <= most; ++i) start[i + 1] += start[i];
@@ -214,14 +235,15 @@ void ListBuilder::write(std::span<std::byte> rows, std::span<std::byte> lanes, s
   for (const bool slot : slots) laneBytes += slot ? sizeof(ListSpan) : 0;
   const auto value = [](const std::vector<std::uint32_t>& of, std::size_t i) { return of.empty() ? 0 : of[i]; };
   const std::size_t threads = rows_ < 4096 ? 1 : parts_.size();
+  const std::uint32_t across = grid_.across, wideAcross = grid_.wideAcross();
+  const int wideShift = std::countr_zero(static_cast<std::uint32_t>(grid_.wide));
   workers_.run(static_cast<int>(threads), [&](int at) {
     const auto t = static_cast<std::size_t>(at);
     for (std::size_t lane = laneCount * t / threads; lane < laneCount * (t + 1) / threads; ++lane) {
-      const std::size_t tile = order_[lane], x = tile % grid_.across, y = tile / grid_.across;
-      const std::size_t wideTile = y / grid_.wide * grid_.wideAcross() + x / grid_.wide;
+      const std::uint32_t tile = order_[lane], x = tile % across, y = tile / across;
+      const std::uint32_t wideTile = (y >> wideShift) * wideAcross + (x >> wideShift);
       std::byte* to = lanes.data() + lane * laneBytes;
-      const ListLane head{
-          static_cast<std::uint32_t>(x * ListGrid::tile), static_cast<std::uint32_t>(y * ListGrid::tile), {}};
+      const ListLane head{x * ListGrid::tile, y * ListGrid::tile, {}};
       std::memcpy(to, &head, sizeof head);
       to += sizeof head;
       for (std::size_t kind = 0; kind < kindCount; ++kind) {

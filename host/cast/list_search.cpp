@@ -63,16 +63,14 @@ void ListSearch::setScene(const Scene& scene) {
 void ListSearch::prepare(const PassTarget& target, const Band& band) {
   if (builtRow_ == band.firstRow) return;
   builtRow_ = band.firstRow;
-  partRows_ = target.rows;
-  build(target, band, 0, target.rows);
+  build(target, band);
 }
 
-/// Lists of the band's rows from `firstRow` on.
-void ListSearch::build(const PassTarget& target, const Band& band, int firstRow, int rows) {
+void ListSearch::build(const PassTarget& target, const Band& band) {
   Stopwatch flattening;
   ListGrid grid;
-  grid.region = {job_.crop.x, job_.crop.y + band.firstRow + firstRow, band.width, std::min(rows, band.rows - firstRow)};
-  grid.across = target.stride / ListGrid::tile, grid.down = rows / ListGrid::tile;
+  grid.region = {job_.crop.x, job_.crop.y + band.firstRow, band.width, band.rows};
+  grid.across = target.stride / ListGrid::tile, grid.down = target.rows / ListGrid::tile;
   builder_.collect(*scene_, eye_, program_.real, program_.eye(), *silhouette_, grid);
   for (std::size_t k = 0; k < kindCount; ++k) kinds_[k] = kinds_[k] || builder_.kinds()[k];
   const bool exact = program_.method == Method::exact;
@@ -135,37 +133,30 @@ void ListSearch::makePipeline() {
 }
 
 /// Tiles without solids are not dispatched: the host says that nothing is seen there.
-void ListSearch::fillUnlisted(const PassTarget& target, int firstRow) const {
+/// They are in their order, whole rows of them beside each other.
+void ListSearch::fillUnlisted(const PassTarget& target) const {
   std::uint32_t* plane = target.image.as<std::uint32_t>().data();
   const std::size_t stride = static_cast<std::size_t>(target.stride), words = stride * u(target.rows);
-  const std::size_t across = stride / ListGrid::tile;
-  const auto fill = [&](int planes, std::uint32_t value) {
+  const auto across = static_cast<std::uint32_t>(target.stride / ListGrid::tile);
+  const auto tiles = builder_.tiles().subspan(lanes_);
+  const auto fill = [&](int planes, std::uint32_t value, std::size_t tileWords = ListGrid::tile) {
     for (; planes > 0; --planes, plane += words)
-      for (const std::uint32_t tile : builder_.tiles().subspan(lanes_)) {
-        const std::size_t y = u(firstRow) + tile / across * ListGrid::tile, x = tile % across * ListGrid::tile;
-        for (std::size_t row = y; row < y + ListGrid::tile; ++row)
-          std::fill_n(plane + row * stride + x, ListGrid::tile, value);
+      for (std::size_t first = 0, end; first < tiles.size(); first = end) {
+        const std::uint32_t row = tiles[first] / across, next = (row + 1) * across;
+        for (end = first + 1; end < tiles.size() && tiles[end] == tiles[end - 1] + 1 && tiles[end] != next;) ++end;
+        std::uint32_t* to = plane + (std::size_t{row} * ListGrid::tile * across + tiles[first] % across) * tileWords;
+        for (int y = 0; y < ListGrid::tile; ++y, to += across * tileWords)
+          std::fill_n(to, (end - first) * tileWords, value);
       }
   };
-  if (job_.wanted & RGB8) {
-    if (isGrey(*scene_)) {
-      std::uint32_t* const words4 = plane;  // four pixels a word
-      for (const std::uint32_t tile : builder_.tiles().subspan(lanes_)) {
-        const std::size_t y = u(firstRow) + tile / across * ListGrid::tile, x = tile % across;
-        for (std::size_t row = y; row < y + ListGrid::tile; ++row) words4[row * across + x] = 0;
-      }
-      plane += words;
-    } else {
-      fill(1, 0);
-    }
-  }
+  if (job_.wanted & RGB8) fill(1, 0, isGrey(*scene_) ? 1 : ListGrid::tile);
   if (job_.wanted & RADIANCE) fill(3, 0);
   if (job_.wanted & DISTANCE) fill(1, std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()));
   if (job_.wanted & SOLID) fill(1, ~0u);
 }
 
 double ListSearch::dispatch(const PassTarget& target, const Band& band, int sample) {
-  if (sample == 0) fillUnlisted(target, 0);
+  if (sample == 0) fillUnlisted(target);
   const int n = job_.samples;
   std::vector<ListPush> pushes;
   const auto texels = static_cast<std::uint32_t>(1 + std::count(kinds_.begin(), kinds_.end(), true));

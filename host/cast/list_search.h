@@ -18,10 +18,10 @@ class ListSearch : public PixelSearch {
   double dispatch(const PassTarget& target, const Band& band, int sample) override;
 
  private:
-  void build(const PassTarget& target, const Band& band, int firstRow, int rows);
+  void build(const PassTarget& target, const Band& band);
   void loadShader();
   void makePipeline();
-  void fillUnlisted(const PassTarget& target, int firstRow) const;
+  void fillUnlisted(const PassTarget& target) const;
 
   PassJob job_;
   const Scene* scene_;
@@ -31,7 +31,7 @@ class ListSearch : public PixelSearch {
   ListBuilder builder_;
   std::array<bool, kindCount> kinds_{};  // that the pipeline has
   bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, ties_ = false, portioned_ = false, told_ = false;
-  int builtRow_ = -1, partRows_ = 0;  // of the band
+  int builtRow_ = -1;  // of the band
   std::size_t lanes_ = 0;
   std::uint32_t viewRaws_ = 0;
   std::vector<std::uint32_t> spirv_;

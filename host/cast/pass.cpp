@@ -50,12 +50,12 @@ Pass::Pass(gpu::Device& device, const Scene& scene, const RenderJob& job, const 
   if (others && (c.distance || surfaces_)) wanted_ |= DISTANCE;
   if (others && (c.solid || surfaces_)) wanted_ |= SOLID;
   if (program.hits) wanted_ |= NORMAL * c.normal | LOCAL * c.local | POSITION * c.position;
-  const bool eightBits = wanted_ & RGB8;
+  levels_ = wanted_ & RGB8;
   if (custom) wanted_ = DISTANCE | SOLID;
   search_ = makeSearch({device, job, options, crop, program, wanted_, samples_, stats}, scene);
   if (custom)
     custom_ = std::make_unique<CustomStage>(
-        CustomStage::Job{device, job, options, crop, radiance, eightBits, others, samples_, stats}, scene);
+        CustomStage::Job{device, job, options, crop, radiance, levels_, others, samples_, stats}, scene);
   if (surfaces_) stats.plan.push_back("normals, local coordinates, points: in binary128 on the host, as exact asks");
 }
 
@@ -131,7 +131,7 @@ void Pass::run(Band& band) {
     float n = static_cast<float>(samples_ * samples_);
     for (float& v : band.radiance) v /= n;
   }
-  if (radiance_ && job_.channels.rgb8 && band.rgb8.empty()) {
+  if (radiance_ && job_.channels.rgb8 && !levels_) {
     band.rgb8.resize(band.radiance.size());
     std::transform(band.radiance.begin(), band.radiance.end(), band.rgb8.begin(), toLevel);
   }

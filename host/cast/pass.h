@@ -101,6 +101,7 @@ class Pass {
   Crop crop_;
   CastStats& stats_;
   bool exact_ = false, surfaces_ = false, radiance_ = false, others_ = false, warm_ = false;
+  bool levels_ = false;  // the device makes 8 bits of the radiance
   int samples_ = 1, stride_ = 0;
   std::uint32_t wanted_ = 0, capacity_ = 0;
   std::unique_ptr<PixelSearch> search_;
