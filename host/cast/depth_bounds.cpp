@@ -88,6 +88,32 @@ WIDE void lowerEllipse(const Area& area, const Ellipse& e) {
   }
 }
 
+/// Eight rows at a time, in 32nds of a pixel: dx^2 + dy^2 <= r^2. What is farther than 255 of them in x is so by 255 as well.
+/// `x`, `y`: from the disc's centre to that of the first pixel.
+WIDE void lowerDisc(const Area& area, std::int16_t x, std::int16_t y, std::int32_t radius) {
+  constexpr Places lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  constexpr std::int16_t far = 255, per = SmallDisc::perPixel;
+  const Places across = lane * per + x;
+  const Places away = across < 0 ? -across : across;
+  const Codes near = reinterpret_cast<Codes>(away < far ? away : far), squares = near * near;
+  DepthCode* to = area.to;
+  for (int row = 0; row < area.height; row += eight) {
+    alignas(16) DepthCode within[eight];  // of the squares, this many
+    for (int i = 0; i < eight; ++i) {
+      const std::int32_t down = y + per * (row + i), left = radius * radius + 1 - down * down;
+      within[i] = static_cast<DepthCode>(left > 0 ? left : 0);
+    }
+#pragma GCC unroll 8
+    for (int i = 0; i < eight; ++i, to += area.stride) {
+      Codes now;
+      std::memcpy(&now, to, sizeof now);
+      const Codes other = area.depth | ~reinterpret_cast<Codes>(squares < within[i]);
+      now = now < other ? now : other;
+      std::memcpy(to, &now, sizeof now);
+    }
+  }
+}
+
 /// An edge bounds x in each row, on the left or on the right; on the other side, by `none`, it does not. Rows beyond top or
 /// bottom are not in it. In pixels from the rectangle's corner.
 struct Edges {
@@ -216,10 +242,10 @@ SeenWithin within(const Footprint& f, std::uint32_t solid, const Crop& area) {
   };
   // Of 2x2 tiles, what is left of them where the area begins after the first.
   const int right = f.x0 / side < area.x / side, lower = f.y0 / side < area.y / side;
-  const std::uint32_t misses = f.misses >> (right + 2 * lower), covers = f.hides != DepthScale::none;
+  const std::uint32_t misses = f.misses >> (right + 2 * lower), covers = f.hides != DepthScale::none ? SeenWithin::shape : 0;
   return {pixel(std::max(f.x0 - area.x, 0), std::max(f.y0 - area.y, 0)),
           pixel(std::min(f.x1 - area.x, area.width - 1), std::min(f.y1 - area.y, area.height - 1)),
-          covers << 24 | misses << 16 | f.nearest, solid};
+          covers | misses << 16 | f.nearest, solid};
 }
 
 void DepthBounds::add(const SeenWithin& in, DepthCode hides, const Cover& cover) {
@@ -247,6 +273,16 @@ void DepthBounds::add(const SeenWithin& in, DepthCode hides, const Cover& cover)
     edges.slope[edges.count++] = slope;
   }
   lowerPolygon(area, edges);
+}
+
+void DepthBounds::add(const SeenWithin& in, SmallDisc disc) {
+  // Modulo 2048 pixels, as the disc's place is: the rectangle is not so far from it.
+  const auto from = [](int pixel, std::uint16_t centre) {
+    return static_cast<std::int16_t>(pixel * SmallDisc::perPixel + SmallDisc::perPixel / 2 - centre);
+  };
+  const Area area{depth_.data() + in.y0() * stride_ + in.x0(), stride_, in.x1() - in.x0() + 1, in.y1() - in.y0() + 1,
+                  disc.hides()};
+  lowerDisc(area, from(in.x0() + area_.x, disc.x()), from(in.y0() + area_.y, disc.y()), disc.radius());
 }
 
 void DepthBounds::noteTiles() {

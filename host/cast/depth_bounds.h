@@ -51,7 +51,7 @@ class TileLimits {
 /// What is seen of a solid within a rectangle of whole tiles, pixels counted from that one's corner. In words, for vectors.
 struct SeenWithin {
   std::uint32_t first, last;  // pixels: y << 16 | x
-  std::uint32_t more;         // covers << 24 | misses << 16 | nearest
+  std::uint32_t more;         // shape or disc | misses << 16 | nearest
   std::uint32_t solid;
   int x0() const { return static_cast<int>(first & 0xffff); }
   int y0() const { return static_cast<int>(first >> 16); }
@@ -59,7 +59,9 @@ struct SeenWithin {
   int y1() const { return static_cast<int>(last >> 16); }
   DepthCode nearest() const { return static_cast<DepthCode>(more); }
   std::uint8_t misses() const { return static_cast<std::uint8_t>(more >> 16); }
-  bool covers() const { return more >> 24; }  // it may hide something
+  static constexpr std::uint32_t shape = 1 << 24, disc = 1 << 25;  // it may hide something: as Cover, as SmallDisc says
+  bool covers() const { return more >> 24; }
+  bool isDisc() const { return more & disc; }
 };
 SeenWithin within(const Footprint& f, std::uint32_t solid, const Crop& area);
 
@@ -74,6 +76,9 @@ class DepthBounds {
 
   /// `seen` within the area hides what begins beyond `hides` where `cover` says, in pixels of the region.
   void add(const SeenWithin& seen, DepthCode hides, const Cover& cover);
+
+  /// The same of a small disc.
+  void add(const SeenWithin& seen, SmallDisc disc);
 
   /// Takes down the deepest pixel of every tile, as things are now, for all below.
   void noteTiles();

@@ -32,9 +32,22 @@ inline void store(const Footprints::View& v, const Slopes& s, bool plain, double
   r.plain[i] = plain;
 }
 
+/// In SmallDisc's units, which moves the centre by up to 2^-6 pixels each way: the radius gives way by sqrt 2 of that, and by
+/// what fp32 took of it.
+inline std::uint64_t smallDisc(double x, double y, float radius, std::int32_t hides) {
+  constexpr double per = SmallDisc::perPixel;
+  const float size = (radius - 0.0225f) * static_cast<float>(per);
+  const bool small = (size >= 1) & (size < SmallDisc::most + 1) & (x > 0) & (y > 0) & (x < 1 << 15) & (y < 1 << 15);
+  const auto X = static_cast<std::int32_t>(small ? x * per + 0.5 : 0), Y = static_cast<std::int32_t>(small ? y * per + 0.5 : 0);
+  const auto R = static_cast<std::int32_t>(small ? size : 0);
+  // No types of 16 bits: for their sake the compiler would take vectors of so many numbers.
+  const auto place = static_cast<std::uint32_t>((X & 0xffff) | Y << 16), rest = static_cast<std::uint32_t>(R | hides << 16);
+  return std::uint64_t{rest} << 32 | place;
+}
+
 /// Centres from the world's origin, and radii. True: some sphere is farther than 16 radii.
 /// A disc through the centre, parallel to the image, is a circle there: what it covers, less what rounding takes.
-template <bool COVERS>
+template <Footprints::Finding WHAT>
 inline __attribute__((always_inline)) bool spheres(const Footprints::View& view, Footprints::Spheres& b) {
   const Footprints::View v = view;  // nothing that is stored can change it
   std::int32_t far = 0;
@@ -54,22 +67,38 @@ inline __attribute__((always_inline)) bool spheres(const Footprints::View& view,
     // for far spheres; |f| <= (|f|^2 / Z + Z) / 2.
     const double all = radius * radius, square = X * X + Y * Y + Z * Z;
     bool covers = (Z > 0) & (square > all * 1.001);
-    if constexpr (COVERS) {
-      const double slope = 1 / Z, reach = 8 * radius * (square * slope + Z);
-      const double held = all - v.lost * (square < reach ? square : reach);
-      const double circle = std::sqrt(held > 0 ? held : 0) * slope;
+    double slope = 0, held = 0;
+    if constexpr (WHAT != Footprints::Finding::seen) {
+      slope = 1 / Z;
+      const double reach = 8 * radius * (square * slope + Z), left = all - v.lost * (square < reach ? square : reach);
+      held = left > 0 ? left : 0;
+    }
+    const double atX = X * slope * v.perX + v.middleX, atY = Y * slope * v.perY + v.middleY;
+    if constexpr (WHAT == Footprints::Finding::covers) {
+      const double circle = std::sqrt(held) * slope;
       const double wide = circle * v.perX - v.margin, high = circle * v.perY - v.margin;
-      b.cover[0][i] = X * slope * v.perX + v.middleX, b.cover[1][i] = Y * slope * v.perY + v.middleY;
-      b.cover[2][i] = wide, b.cover[3][i] = high;
+      b.cover[0][i] = atX, b.cover[1][i] = atY, b.cover[2][i] = wide, b.cover[3][i] = high;
       covers = covers & (wide > 0) & (high > 0);
     }
     store(v, {(X * Z - hx) * inverse, (X * Z + hx) * inverse, (Y * Z - hy) * inverse, (Y * Z + hy) * inverse},
           Z > 1.01 * big, Z - big, Z, covers, i, b);
+    if constexpr (WHAT == Footprints::Finding::discs) {
+      const double per = v.perX < v.perY ? v.perX : v.perY, circle = slope * per;
+      const float radius = std::sqrt(static_cast<float>(held * circle * circle));
+      b.disc[i] = smallDisc(atX, atY, radius - static_cast<float>(v.margin), b.hides[i]);
+    }
   }
   return far;
 }
-WIDE bool ofSpheres(const Footprints::View& v, Footprints::Spheres& b) { return spheres<false>(v, b); }
-WIDE bool ofCoveringSpheres(const Footprints::View& v, Footprints::Spheres& b) { return spheres<true>(v, b); }
+WIDE bool ofSpheres(const Footprints::View& v, Footprints::Spheres& b) {
+  return spheres<Footprints::Finding::seen>(v, b);
+}
+WIDE bool ofDiscs(const Footprints::View& v, Footprints::Spheres& b) {
+  return spheres<Footprints::Finding::discs>(v, b);
+}
+WIDE bool ofCoveringSpheres(const Footprints::View& v, Footprints::Spheres& b) {
+  return spheres<Footprints::Finding::covers>(v, b);
+}
 
 /// Edges of a polygon, around so that its inner side has along dy - down dx >= 0, dx and dy from the edge's corner. `p`: the
 /// corners in pixels.
@@ -227,17 +256,18 @@ template <class Corners>
 void Footprints::add(const Corners& corners, auto& batch, std::size_t at) {
   for (std::size_t k = 0; k < corners.size(); ++k)
     for (std::size_t i = 0; i < 3; ++i) batch.v[3 * k + i][batch.count] = corners[k][i];
-  batch.at[batch.count++] = static_cast<std::uint8_t>(at);
+  batch.at[batch.count++] = static_cast<std::uint32_t>(at);
 }
 
-void Footprints::calculate(std::span<const Shape* const> solids, bool covers) {
+void Footprints::calculate(std::span<const Shape* const> solids, Finding what) {
+  const bool covers = what == Finding::covers;
   spheres_.count = triangles_.count = quads_.count = boxes_.count = others_.count = 0;
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const Shape& shape = *solids[i];
     if (const auto* sphere = std::get_if<Sphere>(&shape)) {
       for (std::size_t k = 0; k < 3; ++k) spheres_.v[k][spheres_.count] = sphere->center[k];
       spheres_.v[3][spheres_.count] = sphere->radius;
-      spheres_.at[spheres_.count++] = static_cast<std::uint8_t>(i);
+      spheres_.at[spheres_.count++] = static_cast<std::uint32_t>(i);
       continue;
     }
     const auto* triangle = vectors_ ? std::get_if<Triangle>(&shape) : nullptr;
@@ -249,7 +279,9 @@ void Footprints::calculate(std::span<const Shape* const> solids, bool covers) {
     else others_.at[others_.count++] = static_cast<std::uint8_t>(i);
   }
   if (spheres_.count) {
-    farSphere_ |= covers ? ofCoveringSpheres(view_, spheres_) : ofSpheres(view_, spheres_);
+    farSphere_ |= covers                   ? ofCoveringSpheres(view_, spheres_)
+                  : what == Finding::discs ? ofDiscs(view_, spheres_)
+                                           : ofSpheres(view_, spheres_);
     if (!vectors_) std::fill_n(spheres_.plain, spheres_.count, 0);
   }
   if (triangles_.count) covers ? ofCoveringTriangles(view_, triangles_) : ofTriangles(view_, triangles_);

@@ -34,6 +34,17 @@ struct Cover {
   double v[8];
 };
 
+/// What a small sphere certainly covers: a circle in 32nds of a pixel, radius below 8 pixels, and from which depth on. For
+/// arithmetic in 16 bits.
+struct SmallDisc {
+  static constexpr int perPixel = 32, most = 254;  // radius
+  std::uint64_t bits;
+  std::uint16_t x() const { return static_cast<std::uint16_t>(bits); }  // in the region, modulo 2048 pixels
+  std::uint16_t y() const { return static_cast<std::uint16_t>(bits >> 16); }
+  std::uint16_t radius() const { return static_cast<std::uint16_t>(bits >> 32); }  // 0: there is none
+  DepthCode hides() const { return static_cast<DepthCode>(bits >> 48); }
+};
+
 class Footprints {
  public:
   static constexpr std::size_t block = 64;
@@ -47,15 +58,16 @@ class Footprints {
   /// be said of one that does not.
   void find(std::span<const Shape* const> solids, auto&& seen) {
     findBatches(
-        solids,
+        solids, false,
         [&](const auto& batch) {
           for (std::size_t i = 0; i < batch.count; ++i) seen(batch.at[i], of(batch, i, solids));
         },
         seen);
   }
-  /// The same by kinds, for vectors: batch(batch), and seen(i, footprint) of what is in none.
-  void findBatches(std::span<const Shape* const> solids, auto&& batch, auto&& seen) {
-    calculate(solids, false);
+  /// The same by kinds, for vectors: batch(batch), and seen(i, footprint) of what is in none. With `discs` of spheres, where
+  /// asked for.
+  void findBatches(std::span<const Shape* const> solids, bool discs, auto&& batch, auto&& seen) {
+    calculate(solids, discs ? Finding::discs : Finding::seen);
     if (spheres_.count) batch(spheres_);
     if (triangles_.count) batch(triangles_);
     if (quads_.count) batch(quads_);
@@ -67,7 +79,7 @@ class Footprints {
   }
   /// covers(i, footprint, cover) of those that hide something.
   void findCovers(std::span<const Shape* const> solids, auto&& covers) {
-    calculate(solids, true);
+    calculate(solids, Finding::covers);
     eachCover(spheres_, covers), eachCover(triangles_, covers), eachCover(quads_, covers);
   }
   /// Some sphere of all so far, seen or not, needs sphere.glsl's FAR_SPHERES.
@@ -90,21 +102,25 @@ class Footprints {
   template <std::size_t NUMBERS, std::size_t COVER>
   struct Batch {
     alignas(64) double v[NUMBERS][block];
-    std::array<std::uint8_t, block> at;  // the solid's place in the block
+    alignas(64) std::uint32_t at[block];  // the solid's place in the block
     std::size_t count = 0;
     int corners;  // of Cover
     alignas(64) std::int32_t x0[block], y0[block], x1[block], y1[block], nearest[block], hides[block];
     alignas(64) std::int32_t plain[block], misses[block]{};  // it serves; Footprint::misses
     alignas(64) double cover[COVER][block];
   };
-  using Spheres = Batch<4, 4>;
+  struct Spheres : Batch<4, 4> {
+    alignas(64) std::uint64_t disc[block];  // SmallDisc's bits
+  };
   using Triangles = Batch<9, 6>;
   using Quads = Batch<12, 8>;
   using Boxes = Batch<24, 0>;
 
+  enum class Finding { seen, discs, covers };
+
  private:
   /// All batches, where slopes are enough (or else the `plain` of spheres is false); others_ where not.
-  void calculate(std::span<const Shape* const> solids, bool covers);
+  void calculate(std::span<const Shape* const> solids, Finding what);
   Footprint ask(const Shape& shape) const;
   template <class Corners>
   static void add(const Corners& corners, auto& batch, std::size_t at);

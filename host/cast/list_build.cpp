@@ -59,15 +59,26 @@ struct ListBuilder::Packs {
 struct ListBuilder::Rounds {
   explicit Rounds(std::size_t threads) : together(static_cast<std::ptrdiff_t>(threads)) {}
   std::barrier<> together;
-  std::atomic<std::size_t> next = 0;  // patch, of all rounds
+  std::atomic<std::size_t> solid = 0;  // the next to look at
+  std::atomic<std::size_t> next = 0;   // patch, of all rounds
 };
 
-/// A round's solids are looked at by shares, then what is seen of them by patches, so that each of the threads writes
-/// what is its own. Few solids are one round; of many those of later rounds are dropped at once where the earlier hide
+namespace {
+constexpr std::size_t firstRound = 131072, few = 16 * Footprints::block;
+/// Where the round that begins there ends.
+std::size_t roundEnd(std::size_t from, std::size_t solids) { return std::min(solids, std::max(firstRound, 4 * from)); }
+std::size_t mostInRound(std::size_t solids) {
+  std::size_t most = 0;
+  for (std::size_t from = 0, to; from < solids; from = to) to = roundEnd(from, solids), most = std::max(most, to - from);
+  return most;
+}
+}  // namespace
+
+/// A round's solids are looked at a few at a time, then what is seen of them by patches, so that each of the threads writes
+/// what is its own, and none waits for another. Few solids are one round; of many those of later rounds are dropped at once where the earlier hide
 /// them.
 void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds,
                        Footprints& footprints) {
-  constexpr std::size_t firstRound = 131072;
   const std::span<const SolidEntry> solids = packs.world.solids;
   Part& part = *parts_[thread];
   Sieve sieve(solids, footprints);
@@ -76,9 +87,11 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
   std::vector<ListHead> heads;
   std::size_t before = 0;  // what `next` had come to when the round began
   for (std::size_t from = 0, to; from < solids.size(); from = to) {
-    to = std::min(solids.size(), std::max(firstRound, 4 * from));
-    part.lookForSieve(solids, from + (to - from) * thread / threads, from + (to - from) * (thread + 1) / threads,
-                      footprints, from == 0 ? nullptr : &tileLimits_);
+    to = roundEnd(from, solids.size());
+    part.newWides = part.heads[wide].size();
+    for (std::size_t at; (at = rounds.solid.fetch_add(few)) < to;)
+      part.lookForSieve(solids, at, std::min(at + few, to), footprints, from == 0 ? nullptr : &tileLimits_,
+                        discs_.get() + (at - from));
     rounds.together.arrive_and_wait();
     for (std::size_t i = rounds.next++; i < before + patches_.size(); i = rounds.next++) {
       const std::size_t at = i - before;
@@ -92,7 +105,7 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
         narrowOnes[t] = &parts_[t]->seenIn[at];
         wideOnes[t] = std::span(parts_[t]->heads[wide]).subspan(parts_[t]->newWides);
       }
-      sieve.sift(patch, narrowOnes, wideOnes);
+      sieve.sift(patch, narrowOnes, wideOnes, {discs_.get(), from});
       for (std::size_t t = 0; t < threads; ++t) parts_[t]->seenIn[at].clear();
       note(at);
       if (to < solids.size()) continue;
@@ -108,7 +121,7 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
     rounds.together.arrive_and_wait();
     before += patches_.size() + threads;  // each thread took one too many
     if (to == solids.size()) break;
-    if (thread == 0) tileLimits_.widen();
+    if (thread == 0) tileLimits_.widen(), rounds.solid = to;
     rounds.together.arrive_and_wait();
   }
 }
@@ -132,6 +145,8 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
   tileLimits_.start(static_cast<std::size_t>(grid_.across), static_cast<std::size_t>(grid_.down));
   wideLimits_.start(static_cast<std::size_t>(grid_.wideAcross()), static_cast<std::size_t>(grid_.wideDown()));
   patches_.resize(hiding ? static_cast<std::size_t>(grid_.wideAcross() * grid_.wideDown()) : 0);
+  if (const std::size_t most = hiding ? mostInRound(solids) : 0; most > discRoom_)
+    discs_ = std::make_unique_for_overwrite<SmallDisc[]>(most), discRoom_ = most;
   const Packs packs{world, type, eyeForms, eye};
   Rounds rounds(threads);
   workers_.run(static_cast<int>(threads), [&](int at) {

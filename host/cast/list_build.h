@@ -90,6 +90,8 @@ class ListBuilder {
   std::vector<std::unique_ptr<Part>> parts_;
   std::vector<ListPatch> patches_;  // by wide tile
   TileLimits tileLimits_, wideLimits_;
+  std::unique_ptr<SmallDisc[]> discs_;  // of a round's solids
+  std::size_t discRoom_ = 0;
   std::array<bool, kindCount> kinds_{};
   bool grazing_ = false, farSphere_ = false, boxOnFace_ = false, wideOnes_ = false;
   std::size_t rows_ = 0, listed_ = 0;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <optional>
 
+#include "host/cast/list_routes.h"
 #include "host/cast/record_batch.h"
 #include "host/cast/wide.h"
 
@@ -132,42 +133,6 @@ void forEachBlock(std::span<const SolidEntry> solids, std::size_t from, std::siz
   }
 }
 
-/// Of a batch: the words of SeenWithin in the wide tile `patch` of each solid that is in one alone; of others there is none.
-struct Routes {
-  static constexpr std::int32_t none = -1;
-  alignas(64) std::uint32_t first[Footprints::block], last[Footprints::block], more[Footprints::block];
-  alignas(64) std::int32_t patch[Footprints::block];
-};
-
-template <class Batch>
-inline __attribute__((always_inline)) void routesOf(const Batch& b, int shift, std::int32_t across, Routes& r) {
-  const std::int32_t inside = (1 << shift) - 1;
-  const bool fits = inside < 64;  // or else one can be in too many tiles of it
-  for (std::size_t i = 0, count = b.count; i < count; ++i) {
-    const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
-    const std::int32_t px = x0 >> shift, py = y0 >> shift;
-    const bool one = (((x1 >> shift) - px) | ((y1 >> shift) - py)) == 0;
-    const bool simple = one & (x0 <= x1) & (y0 <= y1) & (b.plain[i] != 0) & (fits | (((x1 - x0) | (y1 - y0)) < 60));
-    r.first[i] = static_cast<std::uint32_t>((y0 & inside) << 16 | (x0 & inside));
-    r.last[i] = static_cast<std::uint32_t>((y1 & inside) << 16 | (x1 & inside));
-    const std::int32_t covers = b.hides[i] != DepthScale::none ? 1 << 24 : 0;
-    r.more[i] = static_cast<std::uint32_t>(covers | b.misses[i] << 16 | b.nearest[i]);
-    r.patch[i] = simple ? py * across + px : Routes::none;
-  }
-}
-WIDE void routes(const Footprints::Spheres& b, int shift, std::int32_t across, Routes& r) {
-  routesOf(b, shift, across, r);
-}
-WIDE void routes(const Footprints::Triangles& b, int shift, std::int32_t across, Routes& r) {
-  routesOf(b, shift, across, r);
-}
-WIDE void routes(const Footprints::Quads& b, int shift, std::int32_t across, Routes& r) {
-  routesOf(b, shift, across, r);
-}
-WIDE void routes(const Footprints::Boxes& b, int shift, std::int32_t across, Routes& r) {
-  routesOf(b, shift, across, r);
-}
-
 }  // namespace
 
 void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
@@ -184,10 +149,10 @@ void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t fro
 }
 
 void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
-                                     Footprints& footprints, const TileLimits* limits) {
-  newWides = heads[wide].size();
+                                     Footprints& footprints, const TileLimits* limits, SmallDisc* discs) {
   const int shift = std::countr_zero(static_cast<std::uint32_t>(grid_.wide * ListGrid::tile));
   const std::int32_t across = grid_.wideAcross();
+  std::vector<SeenWithin>* const bins = seenIn.data();
   Routes r;
   forEachBlock(solids, from, to, [&](std::span<const Shape* const> shapes, std::uint32_t first) {
     const auto anywhere = [&](std::size_t i, const Footprint& f) {
@@ -196,12 +161,13 @@ void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::si
       if (levelOf(f, grid_) == wide) return heads[wide].push_back({f, solid});
       for (std::int32_t y = f.y0 >> shift; y <= f.y1 >> shift; ++y)
         for (std::int32_t x = f.x0 >> shift; x <= f.x1 >> shift; ++x) {
-          const auto at = static_cast<std::size_t>(y * across + x);
-          seenIn[at].push_back(within(f, solid, grid_.wideArea(x, y)));
+          bins[y * across + x].push_back(within(f, solid, grid_.wideArea(x, y)));
         }
     };
     const auto batch = [&](const auto& b) {
-      routes(b, shift, across, r);
+      route(b, shift, across, r);
+      if constexpr (requires { b.disc; })
+        for (std::size_t i = 0; i < b.count; ++i) discs[first - from + b.at[i]].bits = b.disc[i];
       for (std::size_t i = 0; i < b.count; ++i) {
         const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
         if (limits && b.plain[i] && x0 <= x1 && y0 <= y1 &&
@@ -210,11 +176,10 @@ void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::si
                            static_cast<DepthCode>(b.nearest[i])))
           continue;
         if (r.patch[i] == Routes::none) anywhere(b.at[i], footprints.of(b, i, shapes));
-        else
-          seenIn[static_cast<std::size_t>(r.patch[i])].push_back({r.first[i], r.last[i], r.more[i], first + b.at[i]});
+        else r.forEach(i, first + b.at[i], static_cast<std::size_t>(across), [&](std::size_t at, const SeenWithin& s) { bins[at].push_back(s); });
       }
     };
-    footprints.findBatches(shapes, batch, anywhere);
+    footprints.findBatches(shapes, true, batch, anywhere);
   });
   farSphere = footprints.farSphere();
 }

@@ -74,7 +74,7 @@ void Sieve::sort(std::span<const std::vector<SeenWithin>* const> narrow) {
 }
 
 void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* const> narrow,
-                 std::span<const std::span<const ListHead>> wides) {
+                 std::span<const std::span<const ListHead>> wides, Discs discs) {
   DepthBounds& depths = patch.depths;
   wides_.clear();
   for (const auto& heads : wides)
@@ -94,7 +94,14 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
     std::size_t count = 0;
     for (const std::uint32_t at : std::span(places).first(seen)) {
       kept_[origin_[at] / 64] |= std::uint64_t{1} << origin_[at] % 64;
+      if (sorted_[at].isDisc()) __builtin_prefetch(discs.of + (sorted_[at].solid - discs.first));
+    }
+    for (const std::uint32_t at : std::span(places).first(seen)) {
       if (!sorted_[at].covers()) continue;
+      if (sorted_[at].isDisc()) {
+        depths.add(sorted_[at], discs.of[sorted_[at].solid - discs.first]);
+        continue;
+      }
       covering[count] = at;
       fetch(*(shapes[count++] = &solids_[sorted_[at].solid].shape));
     }
@@ -103,14 +110,22 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
     });
     depths.noteTiles();
   }
-  std::size_t first = 0, list = 0;
+  std::size_t first = 0, list = 0, own = patch.kept.size();
+  const auto begin = static_cast<std::ptrdiff_t>(own);
+  const auto merge = [&] {
+    const auto at = [&](std::size_t place) { return patch.kept.begin() + static_cast<std::ptrdiff_t>(place); };
+    std::inplace_merge(patch.kept.begin() + begin, at(own), patch.kept.end(),
+                       [](const SeenWithin& a, const SeenWithin& b) { return a.solid < b.solid; });
+    own = patch.kept.size();
+  };
   for (std::size_t word = 0; word < kept_.size(); ++word)
     for (std::uint64_t bits = kept_[word]; bits != 0; bits &= bits - 1) {
       const std::size_t place = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
-      while (list < narrow.size() && place - first >= narrow[list]->size()) first += narrow[list++]->size();
+      while (list < narrow.size() && place - first >= narrow[list]->size()) first += narrow[list++]->size(), merge();
       if (list == narrow.size()) return;  // the rest are wide ones
       patch.kept.push_back((*narrow[list])[place - first]);
     }
+  merge();
 }
 
 void Sieve::siftKept(ListPatch& patch) {

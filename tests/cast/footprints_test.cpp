@@ -7,6 +7,7 @@
 #include <map>
 #include <random>
 
+#include "host/cast/list_routes.h"
 #include "host/cast/list_sieve.h"
 #include "host/cast/record_batch.h"
 #include "host/scene/build.h"
@@ -94,10 +95,10 @@ TEST(Footprints, HoldEveryPixelWhoseRayMeetsTheSolid) {
   EXPECT_GT(without, 20);  // between the centres, or beside the picture
 }
 
-TEST(DepthBounds, AreLoweredOnlyWhereTheSolidIsHitAndNoNearerThanThat) {
+void depthsAreLoweredOnlyWhereHit(bool asDiscs) {
   Measured m;
   int hits = 0, lowered = 0;
-  for (const Shape& shape : solids(80)) {
+  for (const Shape& shape : solids(asDiscs ? 600 : 80)) {
     const Shape* one = &shape;
     const Footprint f = m.seen(shape);
     // The whole picture, then one of its parts.
@@ -107,10 +108,21 @@ TEST(DepthBounds, AreLoweredOnlyWhereTheSolidIsHitAndNoNearerThanThat) {
       DepthBounds depths;
       depths.start(area, width, height);
       DepthCode hides = DepthScale::none;
-      m.footprints.findCovers(std::span(&one, 1), [&](std::size_t, const Footprint& g, const Cover& cover) {
-        hides = g.hides;
-        depths.add(within(g, 0, area), hides, cover);
-      });
+      if (asDiscs) {
+        const auto batch = [&](const auto& b) {
+          if constexpr (requires { b.disc; })
+            if (const SmallDisc disc{b.disc[0]}; b.plain[0] && disc.radius() != 0) {
+              hides = disc.hides();
+              depths.add(within(f, 0, area), disc);
+            }
+        };
+        m.footprints.findBatches(std::span(&one, 1), true, batch, [](std::size_t, const Footprint&) {});
+      } else {
+        m.footprints.findCovers(std::span(&one, 1), [&](std::size_t, const Footprint& g, const Cover& cover) {
+          hides = g.hides;
+          depths.add(within(g, 0, area), hides, cover);
+        });
+      }
       if (hides == DepthScale::none) continue;
       depths.noteTiles();
       for (int y = area.y; y < std::min(area.y + area.height, height); ++y)
@@ -129,6 +141,8 @@ TEST(DepthBounds, AreLoweredOnlyWhereTheSolidIsHitAndNoNearerThanThat) {
   EXPECT_GT(lowered, 2000);
   EXPECT_GT(lowered, 0.9 * hits);
 }
+TEST(DepthBounds, AreLoweredOnlyWhereTheSolidIsHitAndNoNearerThanThat) { depthsAreLoweredOnlyWhereHit(false); }
+TEST(DepthBounds, OfSmallDiscsToo) { depthsAreLoweredOnlyWhereHit(true); }
 
 TEST(SeenWithin, HasWhatIsSeenInItsPartOfThePicture) {
   Measured m;
@@ -154,6 +168,53 @@ TEST(SeenWithin, HasWhatIsSeenInItsPartOfThePicture) {
   }
   EXPECT_GT(hits, 3000);
   EXPECT_GT(missed, 20);
+}
+
+/// Every wide tile's part of a solid is the one that `within` has of it.
+TEST(Routes, GoWhereTheSolidIsSeen) {
+  Measured m;
+  const std::vector<Shape> all = solids(400);
+  constexpr int shift = 4, side = 1 << shift, across = (width + side - 1) / side;
+  Routes routes;
+  int whole = 0, split = 0, elsewhere = 0, discs = 0, missed = 0;
+  for (std::size_t first = 0; first + Footprints::block <= all.size(); first += Footprints::block) {
+    std::vector<const Shape*> shapes;
+    for (std::size_t i = 0; i < Footprints::block; ++i) shapes.push_back(&all[first + i]);
+    const auto batch = [&](const auto& b) {
+      route(b, shift, across, routes);
+      for (std::size_t i = 0; i < b.count; ++i) {
+        const Footprint f = m.footprints.of(b, i, shapes);
+        const bool few = f.x1 / side - f.x0 / side < 2 && f.y1 / side - f.y0 / side < 2;
+        const bool plain = f.seen() && b.plain[i] && few;
+        ASSERT_EQ(routes.patch[i] != Routes::none, plain);
+        if (!plain) {
+          ++elsewhere;
+          continue;
+        }
+        std::map<std::size_t, SeenWithin> parts;
+        routes.forEach(i, 5, across, [&](std::size_t at, const SeenWithin& s) {
+          EXPECT_TRUE(parts.emplace(at, s).second);
+        });
+        for (int y = f.y0 / side; y <= f.y1 / side; ++y)
+          for (int x = f.x0 / side; x <= f.x1 / side; ++x) {
+            ASSERT_TRUE(parts.contains(static_cast<std::size_t>(y * across + x)));
+            const SeenWithin s = parts.at(static_cast<std::size_t>(y * across + x));
+            const SeenWithin t = within(f, 5, {x * side, y * side, side, side});
+            EXPECT_EQ(s.first, t.first);
+            EXPECT_EQ(s.last, t.last);
+            EXPECT_EQ(s.more & 0xffffff, t.more & 0xffffff);
+            EXPECT_EQ(s.covers(), t.covers());
+            EXPECT_EQ(s.solid, 5u);
+            discs += s.isDisc(), missed += s.misses() != 0;
+          }
+        const auto parted = static_cast<std::size_t>((f.x1 / side - f.x0 / side + 1) * (f.y1 / side - f.y0 / side + 1));
+        EXPECT_EQ(parts.size(), parted);
+        ++(parted == 1 ? whole : split);
+      }
+    };
+    m.footprints.findBatches(shapes, true, batch, [](std::size_t, const Footprint&) {});
+  }
+  for (const int count : {whole, split, elsewhere, discs, missed}) EXPECT_GT(count, 50);
 }
 
 /// Of a crowd, half of it behind a wall: no pixel's nearest solid is dropped, and most of what is hidden is.
@@ -184,7 +245,7 @@ TEST(Sieve, KeepsWhatIsNearestInSomePixel) {
     Sieve sieve(world.solids, m.footprints);
     const std::vector<SeenWithin>* lists[] = {&first, &second};
     const std::span<const ListHead> wides[] = {wide};
-    sieve.sift(patch, lists, wides);
+    sieve.sift(patch, lists, wides, {nullptr, 0});
     sieve.siftKept(patch);
     EXPECT_LT(patch.kept.size(), (first.size() + second.size()) * 2 / 3);
     EXPECT_TRUE(std::is_sorted(patch.kept.begin(), patch.kept.end(),
