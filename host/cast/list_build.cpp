@@ -5,6 +5,7 @@
 #include <barrier>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "host/cast/list_part.h"
 #include "host/cast/wide.h"
@@ -223,25 +224,43 @@ void ListBuilder::layOut() {
   rows_ = row;
 }
 
-/// Longest first, so that the lanes of a vector end together and the last workgroups are short.
+/// By blocks of 16x16 tiles, in which the longest come first: lanes of a vector end together, and what neighbours read and
+/// write is near. llvmpipe deals a dispatch to its threads in as many stretches as these are: so every stretch gets blocks
+/// from all over the picture.
 void ListBuilder::sortTiles() {
-  const std::uint32_t most = std::min(4095u, mostOf(total_.data(), total_.size()));
-  std::vector<std::uint32_t> start(most + 2, 0);
-  for (const std::uint32_t entries : total_) ++start[most - std::min(entries, most) + 1];
-  for (std::size_t i = 0; i <= most; ++i) start[i + 1] += start[i];
-  listed_ = start[most];
+  constexpr std::size_t side = 16, stretches = 16, most = 64;
+  const auto across = static_cast<std::size_t>(grid_.across), down = static_cast<std::size_t>(grid_.down);
+  const std::size_t blocksAcross = (across + side - 1) / side, blocks = blocksAcross * ((down + side - 1) / side);
   order_.resize(total_.size());
-  for (std::uint32_t tile = 0; tile < total_.size(); ++tile)
-    order_[start[most - std::min(total_[tile], most)]++] = tile;
-  const auto longer = [&](std::uint32_t a, std::uint32_t b) { return total_[a] > total_[b]; };
-  std::stable_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(start[0]), longer);
-}
-
-std::uint32_t ListBuilder::longest() const { return order_.empty() ? 0 : total_[order_[0]]; }
-
-std::size_t ListBuilder::tilesLongerThan(std::uint32_t entries) const {
-  const auto longer = [&](std::uint32_t tile, std::uint32_t n) { return total_[tile] > n; };
-  return static_cast<std::size_t>(std::lower_bound(order_.begin(), order_.end(), entries, longer) - order_.begin());
+  std::uint32_t* to = order_.data();
+  longest_ = 0;
+  for (std::size_t stretch = 0; stretch < stretches; ++stretch)
+    for (std::size_t block = stretch; block < blocks; block += stretches) {
+      const std::size_t x0 = block % blocksAcross * side, y0 = block / blocksAcross * side;
+      const std::size_t x1 = std::min(x0 + side, across), y1 = std::min(y0 + side, down);
+      std::array<std::uint32_t, most + 1> start{};
+      const auto place = [&](std::size_t at) { return most - std::min<std::size_t>(total_[at], most); };
+      for (std::size_t y = y0; y < y1; ++y)
+        for (std::size_t x = x0; x < x1; ++x) {
+          ++start[place(y * across + x)];
+          longest_ = std::max(longest_, total_[y * across + x]);
+        }
+      std::uint32_t before = 0;
+      for (std::uint32_t& of : start) before += std::exchange(of, before);
+      const std::uint32_t listed = start[most], large = start[1];
+      for (std::size_t y = y0; y < y1; ++y)
+        for (std::size_t x = x0; x < x1; ++x) {
+          const std::size_t at = y * across + x;
+          to[start[place(at)]++] = static_cast<std::uint32_t>(at);
+        }
+      std::sort(to, to + large, [&](std::uint32_t a, std::uint32_t b) { return total_[a] > total_[b]; });
+      to += listed;  // the others are overwritten
+    }
+  listed_ = static_cast<std::size_t>(to - order_.data());
+  for (std::uint32_t tile = 0; tile < total_.size() && to != order_.data() + order_.size(); ++tile) {
+    *to = tile;
+    to += total_[tile] == 0;
+  }
 }
 
 void ListBuilder::write(std::span<std::byte> rows, std::span<std::byte> lanes, std::size_t laneCount,

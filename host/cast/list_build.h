@@ -63,12 +63,10 @@ class ListBuilder {
   bool boxOnFace() const { return boxOnFace_; }
   std::size_t rows() const { return rows_; }  // that the lists take
   std::size_t seen() const;                   // solids; counts them
-  /// Tiles with solids, longest lists first, then the others. A dispatch may go beyond listedTiles(), never beyond all.
+  /// Tiles with solids, in the order of the dispatch, then the others in theirs. A dispatch may go beyond listedTiles(), never beyond all.
   std::span<const std::uint32_t> tiles() const { return order_; }
   std::size_t listedTiles() const { return listed_; }
-  /// Tiles whose lists are longer than this.
-  std::size_t tilesLongerThan(std::uint32_t entries) const;
-  std::uint32_t longest() const;
+  std::uint32_t longest() const { return longest_; }  // list of a tile
 
   /// The rows, and for the first `lanes` of tiles() a ListLane and a ListSpan for each of `slots` (kinds in order).
   void write(std::span<std::byte> rows, std::span<std::byte> lanes, std::size_t laneCount,
@@ -98,7 +96,8 @@ class ListBuilder {
   // [narrow 0 or wide 1][kind]: by tile, and for the wide ones the count beside
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> first_, count_;
   std::vector<std::uint32_t> next_;  // layOut's
-  std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles by falling entries
+  std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles()
+  std::uint32_t longest_ = 0;
 };
 
 }  // namespace solidcast
