@@ -25,11 +25,6 @@ WIDE void place(std::uint32_t* counts, std::uint32_t* next, std::uint32_t rows, 
     next[i] += entries * rows;
   }
 }
-WIDE std::uint32_t mostOf(const std::uint32_t* counts, std::size_t tiles) {
-  std::uint32_t most = 0;
-  for (std::size_t i = 0; i < tiles; ++i) most = std::max(most, counts[i]);
-  return most;
-}
 
 }  // namespace
 
