@@ -118,17 +118,19 @@ void ListBuilder::Part::start(const ListGrid& grid) {
 
 namespace {
 
+/// Into the caches, what comes a block later: solid by solid, while others are worked on; all at once they would wait for
+/// each other.
+void fetchNext(std::span<const SolidEntry> solids, std::size_t solid) {
+  const auto* next = reinterpret_cast<const char*>(solids.data() + solid + Footprints::block);
+  __builtin_prefetch(next), __builtin_prefetch(next + 64);
+}
+
 /// By blocks; find(shapes, the first's place).
 void forEachBlock(std::span<const SolidEntry> solids, std::size_t from, std::size_t to, auto&& find) {
   std::array<const Shape*, Footprints::block> shapes;
   for (std::size_t first = from; first < to; first += Footprints::block) {
     const std::size_t count = std::min(Footprints::block, to - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      shapes[i] = &solids[first + i].shape;
-      // The next block's, in time.
-      const auto* next = reinterpret_cast<const char*>(solids.data() + first + i + Footprints::block);
-      __builtin_prefetch(next), __builtin_prefetch(next + 64);
-    }
+    for (std::size_t i = 0; i < count; ++i) shapes[i] = &solids[first + i].shape;
     find(std::span<const Shape* const>(shapes).first(count), static_cast<std::uint32_t>(first));
   }
 }
@@ -139,6 +141,7 @@ void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t fro
                              Footprints& footprints) {
   forEachBlock(solids, from, to, [&](std::span<const Shape* const> shapes, std::uint32_t first) {
     footprints.find(shapes, [&](std::size_t i, const Footprint& f) {
+      fetchNext(solids, first + i);
       if (!f.seen()) return;
       ListHead& head = heads[levelOf(f, grid_)].emplace_back();
       head.seen = f, head.solid = first + static_cast<std::uint32_t>(i);
@@ -169,6 +172,7 @@ void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::si
       if constexpr (requires { b.disc; })
         for (std::size_t i = 0; i < b.count; ++i) discs[first - from + b.at[i]].bits = b.disc[i];
       for (std::size_t i = 0; i < b.count; ++i) {
+        fetchNext(solids, first + i);
         const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
         if (limits && b.plain[i] && x0 <= x1 && y0 <= y1 &&
             limits->behind(static_cast<std::uint32_t>(x0), static_cast<std::uint32_t>(y0),
