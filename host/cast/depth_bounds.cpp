@@ -90,7 +90,8 @@ WIDE void lowerEllipse(const Area& area, const Ellipse& e) {
 
 /// Eight rows at a time, in 32nds of a pixel: dx^2 + dy^2 <= r^2. What is farther than 255 of them in x is so by 255 as well.
 /// `x`, `y`: from the disc's centre to that of the first pixel.
-WIDE void lowerDisc(const Area& area, std::int16_t x, std::int16_t y, std::int32_t radius) {
+inline __attribute__((always_inline)) void lowerDisc(const Area& area, std::int16_t x, std::int16_t y,
+                                                     std::int32_t radius) {
   constexpr Places lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   constexpr std::int16_t far = 255, per = SmallDisc::perPixel;
   const Places across = lane * per + x;
@@ -111,6 +112,21 @@ WIDE void lowerDisc(const Area& area, std::int16_t x, std::int16_t y, std::int32
       now = now < other ? now : other;
       std::memcpy(to, &now, sizeof now);
     }
+  }
+}
+
+/// Of those of `solids` at `places`. `depth`, `left` and `above`: the area's first pixel.
+WIDE void lowerDiscs(DepthCode* depth, std::ptrdiff_t stride, int left, int above, std::span<const SeenWithin> solids,
+                     std::span<const std::uint32_t> places, const SmallDiscs& discs) {
+  // Modulo 2048 pixels, as the disc's place is: the rectangle is not so far from it.
+  const auto from = [](int pixel, std::uint16_t centre) {
+    return static_cast<std::int16_t>(pixel * SmallDisc::perPixel + SmallDisc::perPixel / 2 - centre);
+  };
+  for (const std::uint32_t at : places) {
+    const SeenWithin s = solids[at];
+    const SmallDisc disc = discs.of[s.solid - discs.first];
+    const Area area{depth + s.y0() * stride + s.x0(), stride, s.x1() - s.x0() + 1, s.y1() - s.y0() + 1, disc.hides()};
+    lowerDisc(area, from(s.x0() + left, disc.x()), from(s.y0() + above, disc.y()), disc.radius());
   }
 }
 
@@ -196,18 +212,27 @@ __attribute__((noinline)) bool someTile(const TileLimits& tiles, const SeenWithi
 WIDE std::size_t visibleOf(const DepthCode* depth, std::ptrdiff_t stride, const TileLimits& tiles,
                            std::span<const SeenWithin> solids, std::size_t mostCovering,
                            std::span<std::uint32_t> places, std::size_t& looked) {
-  std::size_t found = 0, covering = 0, at = looked;
-  for (; at < solids.size() && found < places.size() && covering < mostCovering; ++at) {
-    const SeenWithin s = solids[at];
-    if (tiles.behind(s.first & 0xffff, s.first >> 16, s.last & 0xffff, s.last >> 16, s.nearest())) continue;
-    const int width = s.x1() - s.x0() + 1, height = s.y1() - s.y0() + 1;
-    const bool seen = (width <= lanes) & (height <= lanes)
-                          ? somePixel(depth + s.y0() * stride + s.x0(), stride, width, height, s.nearest())
-                          : someTile(tiles, s);
-    places[found] = static_cast<std::uint32_t>(at);
-    found += seen, covering += seen & s.covers();
+  std::size_t found = 0, covering = 0;
+  constexpr std::size_t few = Footprints::block;
+  while (looked < solids.size() && found < places.size() && covering < mostCovering) {
+    std::array<std::uint32_t, few> near;  // not behind the tiles' limits
+    const std::size_t end = looked + std::min({few, solids.size() - looked, places.size() - found});
+    std::size_t count = 0;
+    for (; looked < end; ++looked) {
+      const SeenWithin s = solids[looked];
+      near[count] = static_cast<std::uint32_t>(looked);
+      count += !tiles.behind(s.first & 0xffff, s.first >> 16, s.last & 0xffff, s.last >> 16, s.nearest());
+    }
+    for (const std::uint32_t at : std::span(near).first(count)) {
+      const SeenWithin s = solids[at];
+      const int width = s.x1() - s.x0() + 1, height = s.y1() - s.y0() + 1;
+      const bool seen = (width <= lanes) & (height <= lanes)
+                            ? somePixel(depth + s.y0() * stride + s.x0(), stride, width, height, s.nearest())
+                            : someTile(tiles, s);
+      places[found] = at;
+      found += seen, covering += seen & s.covers();
+    }
   }
-  looked = at;
   return found;
 }
 
@@ -275,14 +300,9 @@ void DepthBounds::add(const SeenWithin& in, DepthCode hides, const Cover& cover)
   lowerPolygon(area, edges);
 }
 
-void DepthBounds::add(const SeenWithin& in, SmallDisc disc) {
-  // Modulo 2048 pixels, as the disc's place is: the rectangle is not so far from it.
-  const auto from = [](int pixel, std::uint16_t centre) {
-    return static_cast<std::int16_t>(pixel * SmallDisc::perPixel + SmallDisc::perPixel / 2 - centre);
-  };
-  const Area area{depth_.data() + in.y0() * stride_ + in.x0(), stride_, in.x1() - in.x0() + 1, in.y1() - in.y0() + 1,
-                  disc.hides()};
-  lowerDisc(area, from(in.x0() + area_.x, disc.x()), from(in.y0() + area_.y, disc.y()), disc.radius());
+void DepthBounds::add(std::span<const SeenWithin> solids, std::span<const std::uint32_t> places,
+                      const SmallDiscs& discs) {
+  lowerDiscs(depth_.data(), stride_, area_.x, area_.y, solids, places, discs);
 }
 
 void DepthBounds::noteTiles() {

@@ -65,6 +65,12 @@ struct SeenWithin {
 };
 SeenWithin within(const Footprint& f, std::uint32_t solid, const Crop& area);
 
+/// Of solids from `first` on.
+struct SmallDiscs {
+  const SmallDisc* of;
+  std::size_t first;
+};
+
 /// Of a rectangle of a region's pixels, whole tiles.
 class DepthBounds {
  public:
@@ -77,8 +83,8 @@ class DepthBounds {
   /// `seen` within the area hides what begins beyond `hides` where `cover` says, in pixels of the region.
   void add(const SeenWithin& seen, DepthCode hides, const Cover& cover);
 
-  /// The same of a small disc.
-  void add(const SeenWithin& seen, SmallDisc disc);
+  /// The same of small discs, those of `solids` at `places`.
+  void add(std::span<const SeenWithin> solids, std::span<const std::uint32_t> places, const SmallDiscs& discs);
 
   /// Takes down the deepest pixel of every tile, as things are now, for all below.
   void noteTiles();
@@ -86,7 +92,8 @@ class DepthBounds {
   DepthCode deepest() const { return deepest_; }
 
   /// Places of those that can be seen, as far as is known: one that is in few tiles by these and by its pixels, a larger one
-  /// tile by tile. Ends when the places are full or so many of those seen may cover something; `looked`: how far it came.
+  /// tile by tile. Ends when the places are full or so many of those seen may cover something, or up to 63 more; `looked`:
+  /// how far it came.
   std::size_t visible(std::span<const SeenWithin> solids, std::size_t mostCovering, std::span<std::uint32_t> places,
                       std::size_t& looked) const;
   bool hides(const SeenWithin& seen) const {

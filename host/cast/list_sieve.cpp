@@ -74,7 +74,7 @@ void Sieve::sort(std::span<const std::vector<SeenWithin>* const> narrow) {
 }
 
 void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* const> narrow,
-                 std::span<const std::span<const ListHead>> wides, Discs discs) {
+                 std::span<const std::span<const ListHead>> wides, const SmallDiscs& discs) {
   DepthBounds& depths = patch.depths;
   wides_.clear();
   for (const auto& heads : wides)
@@ -85,29 +85,33 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
   if (sorted_.empty()) return;
   kept_.assign(sorted_.size() / 64 + 1, 0);
   constexpr std::size_t together = Footprints::block;
-  std::array<std::uint32_t, 4 * together> places;
+  std::array<std::uint32_t, 4 * together> places, round;
   std::array<const Shape*, together> shapes;
   std::array<std::uint32_t, together> covering;
   for (std::size_t looked = 0; looked < sorted_.size();) {
     if (sorted_[looked].nearest() >> shift << shift > depths.deepest()) break;  // and so are all others
     const std::size_t seen = depths.visible(sorted_, together, places, looked);
-    std::size_t count = 0;
+    std::size_t count = 0, rounds = 0;
+    const auto addShapes = [&] {
+      footprints_.findCovers(
+          std::span(shapes).first(count),
+          [&](std::size_t i, const Footprint& f, const Cover& cover) { depths.add(sorted_[covering[i]], f.hides, cover); });
+      count = 0;
+    };
     for (const std::uint32_t at : std::span(places).first(seen)) {
+      const SeenWithin& s = sorted_[at];
       kept_[origin_[at] / 64] |= std::uint64_t{1} << origin_[at] % 64;
-      if (sorted_[at].isDisc()) __builtin_prefetch(discs.of + (sorted_[at].solid - discs.first));
-    }
-    for (const std::uint32_t at : std::span(places).first(seen)) {
-      if (!sorted_[at].covers()) continue;
-      if (sorted_[at].isDisc()) {
-        depths.add(sorted_[at], discs.of[sorted_[at].solid - discs.first]);
-        continue;
+      if (s.isDisc()) {
+        round[rounds++] = at;
+        __builtin_prefetch(discs.of + (s.solid - discs.first));
+      } else if (s.covers()) {
+        covering[count] = at;
+        fetch(*(shapes[count++] = &solids_[s.solid].shape));
+        if (count == shapes.size()) addShapes();
       }
-      covering[count] = at;
-      fetch(*(shapes[count++] = &solids_[sorted_[at].solid].shape));
     }
-    footprints_.findCovers(std::span(shapes).first(count), [&](std::size_t i, const Footprint& f, const Cover& cover) {
-      depths.add(sorted_[covering[i]], f.hides, cover);
-    });
+    depths.add(sorted_, std::span(round).first(rounds), discs);
+    addShapes();
     depths.noteTiles();
   }
   std::size_t first = 0, list = 0, own = patch.kept.size();

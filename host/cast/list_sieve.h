@@ -47,17 +47,12 @@ struct ListPatch {
 
 class Sieve {
  public:
-  /// Of a round's solids, where SeenWithin says so.
-  struct Discs {
-    const SmallDisc* of;
-    std::size_t first;  // solid
-  };
   Sieve(std::span<const SolidEntry> solids, Footprints& footprints) : solids_(solids), footprints_(footprints) {}
 
   /// Adds to the patch, which has been started, what is not hidden of `narrow`, lists each in the order of the solids,
   /// in which it is added. `wides` hide as well, where they are seen.
   void sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* const> narrow,
-            std::span<const std::span<const ListHead>> wides, Discs discs);
+            std::span<const std::span<const ListHead>> wides, const SmallDiscs& discs);
   /// Removes what has been hidden since it was kept.
   void siftKept(ListPatch& patch);
 

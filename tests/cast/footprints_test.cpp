@@ -113,7 +113,9 @@ void depthsAreLoweredOnlyWhereHit(bool asDiscs) {
           if constexpr (requires { b.disc; })
             if (const SmallDisc disc{b.disc[0]}; b.plain[0] && disc.radius() != 0) {
               hides = disc.hides();
-              depths.add(within(f, 0, area), disc);
+              const SeenWithin seen = within(f, 0, area);
+              const std::uint32_t place = 0;
+              depths.add({&seen, 1}, {&place, 1}, {&disc, 0});
             }
         };
         m.footprints.findBatches(std::span(&one, 1), true, batch, [](std::size_t, const Footprint&) {});
