@@ -20,7 +20,7 @@
 
 #include "search.glsl"
 
-layout(local_size_x = 16) in;
+layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Portion {
   uint wholeWidth, wholeHeight;  // of the whole image, in pixels
@@ -89,6 +89,9 @@ void main() {
     }
   }
 
+  // Lanes read from places of their own, and wait for them: short records are loaded one entry ahead (longer ones take the
+  // registers of too many rays; behind the last entry there is always something to read). The condition at the loop's end saves
+  // llvmpipe a last round that does nothing.
   uint done = 0u;  // entries of the kinds before
 #define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS)                                    \
   if (KIND##_COUNT > 0u) {                                                                       \
@@ -99,13 +102,22 @@ void main() {
       end = min(max(portion.to, done) - done, list.w);                                           \
       done += list.w;                                                                            \
     }                                                                                            \
-    uint rows = ROWS(EYE_ROWS, WORLD_ROWS);                                                      \
+    const uint rows = ROWS(EYE_ROWS, WORLD_ROWS);                                                \
     uint entry = i < list.y ? list.x + i * rows : list.z + (i - list.y) * rows;                  \
-    while (i < end) {                                                                            \
-      entry = i == list.y ? list.z : entry;                                                      \
-      UNROLL for (int k = 0; k < RAYS; ++k) TEST(kind, entry);                                   \
-      entry += rows;                                                                             \
-      ++i;                                                                                       \
+    useAhead = rows == 2u;                                                                       \
+    real4 next[2];                                                                               \
+    if (useAhead) next = real4[2](loadedRow(entry), loadedRow(entry + 1u));                      \
+    if (i < end) {                                                                               \
+      do {                                                                                       \
+        uint now = entry;                                                                        \
+        entry = i + 1u == list.y ? list.z : entry + rows;                                        \
+        if (useAhead) {                                                                          \
+          ahead = next;                                                                          \
+          now = 0u;                                                                              \
+          next = real4[2](loadedRow(entry), loadedRow(entry + 1u));                              \
+        }                                                                                        \
+        UNROLL for (int k = 0; k < RAYS; ++k) TEST(kind, now);                                   \
+      } while (++i < end);                                                                       \
     }                                                                                            \
   }
 #include "solids.def"

@@ -42,13 +42,20 @@ layout(set = 0, binding = 0) uniform usamplerBuffer records;
 layout(set = 0, binding = 0, std430) readonly buffer Records { uvec4 records[]; };
 #define RECORD_TEXEL(i) records[i]
 #endif
-real4 record(uint row) {
+real4 loadedRow(uint row) {
 #if ARITHMETIC == 1
   uvec4 low = RECORD_TEXEL(2u * row), high = RECORD_TEXEL(2u * row + 1u);
   return real4(packDouble2x32(low.xy), packDouble2x32(low.zw), packDouble2x32(high.xy), packDouble2x32(high.zw));
 #else
   return uintBitsToFloat(RECORD_TEXEL(row));
 #endif
+}
+// Rows that lists.comp has loaded ahead. Which it does is the same for all of a loop, so that nothing is left of the branch.
+real4 ahead[2];
+bool useAhead = false;
+real4 record(uint row) {
+  if (useAhead) return ahead[row];
+  return loadedRow(row);
 }
 real4 worldRecord(uint row) { return record(row); }  // the lists of free rays hold nothing else
 #elif EYE

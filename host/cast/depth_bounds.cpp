@@ -210,17 +210,17 @@ __attribute__((noinline)) bool someTile(const TileLimits& tiles, const SeenWithi
 }
 
 WIDE std::size_t visibleOf(const DepthCode* depth, std::ptrdiff_t stride, const TileLimits& tiles,
-                           std::span<const SeenWithin> solids, std::size_t mostCovering,
-                           std::span<std::uint32_t> places, std::size_t& looked) {
+                           std::span<const SeenWithin> solids, std::span<const std::uint32_t> order,
+                           std::size_t mostCovering, std::span<std::uint32_t> places, std::size_t& looked) {
   std::size_t found = 0, covering = 0;
   constexpr std::size_t few = Footprints::block;
-  while (looked < solids.size() && found < places.size() && covering < mostCovering) {
+  while (looked < order.size() && found < places.size() && covering < mostCovering) {
     std::array<std::uint32_t, few> near;  // not behind the tiles' limits
-    const std::size_t end = looked + std::min({few, solids.size() - looked, places.size() - found});
+    const std::size_t end = looked + std::min({few, order.size() - looked, places.size() - found});
     std::size_t count = 0;
     for (; looked < end; ++looked) {
-      const SeenWithin s = solids[looked];
-      near[count] = static_cast<std::uint32_t>(looked);
+      const SeenWithin s = solids[order[looked]];
+      near[count] = order[looked];
       count += !tiles.behind(s.first & 0xffff, s.first >> 16, s.last & 0xffff, s.last >> 16, s.nearest());
     }
     for (const std::uint32_t at : std::span(near).first(count)) {
@@ -318,9 +318,10 @@ void DepthBounds::noteTiles() {
   tiles_.widen();
 }
 
-std::size_t DepthBounds::visible(std::span<const SeenWithin> solids, std::size_t mostCovering,
-                                 std::span<std::uint32_t> places, std::size_t& looked) const {
-  return visibleOf(depth_.data(), stride_, tiles_, solids, mostCovering, places, looked);
+std::size_t DepthBounds::visible(std::span<const SeenWithin> solids, std::span<const std::uint32_t> order,
+                                 std::size_t mostCovering, std::span<std::uint32_t> places,
+                                 std::size_t& looked) const {
+  return visibleOf(depth_.data(), stride_, tiles_, solids, order, mostCovering, places, looked);
 }
 
 }  // namespace solidcast

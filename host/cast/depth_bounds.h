@@ -91,15 +91,15 @@ class DepthBounds {
   const TileLimits& tiles() const { return tiles_; }
   DepthCode deepest() const { return deepest_; }
 
-  /// Places of those that can be seen, as far as is known: one that is in few tiles by these and by its pixels, a larger one
+  /// Of `solids` in that order the places of those that can be seen, as far as is known: one that is in few tiles by these and by its pixels, a larger one
   /// tile by tile. Ends when the places are full or so many of those seen may cover something, or up to 63 more; `looked`:
   /// how far it came.
-  std::size_t visible(std::span<const SeenWithin> solids, std::size_t mostCovering, std::span<std::uint32_t> places,
-                      std::size_t& looked) const;
+  std::size_t visible(std::span<const SeenWithin> solids, std::span<const std::uint32_t> order,
+                      std::size_t mostCovering, std::span<std::uint32_t> places, std::size_t& looked) const;
   bool hides(const SeenWithin& seen) const {
-    std::uint32_t place;
+    std::uint32_t place = 0;
     std::size_t looked = 0;
-    return visible({&seen, 1}, 1, {&place, 1}, looked) == 0;
+    return visible({&seen, 1}, {&place, 1}, 1, {&place, 1}, looked) == 0;
   }
 
  private:

@@ -14,9 +14,10 @@ struct ListPush {
   std::uint32_t wholeWidth, wholeHeight, firstX, firstY, rows, stride, sampleX, sampleY, from, to, last, listTexels;
 };
 
-constexpr std::uint32_t groupLanes = 16;  // lists.comp: local_size_x
+constexpr std::uint32_t groupLanes = 64;  // lists.comp: local_size_x
 /// Entries that a dispatch walks: llvmpipe stops all loops of an invocation after 65535 rounds without a word.
 constexpr std::uint32_t mostEntries = 65000;
+constexpr std::size_t readAhead = 2;  // lists.comp: rows that it loads behind the last one
 constexpr std::size_t stateBytes = 40 * 16;  // lists.comp: State, by tile, at most
 
 /// What is taken for a buffer of so many bytes, so that it serves the next scene too.
@@ -87,13 +88,13 @@ void ListSearch::build(const PassTarget& target, const Band& band) {
   const std::size_t bytes = builder_.rows() * rowBytes(program_.real);
   const std::size_t listBytes = lanes_ * laneTexels * 16;
   const std::size_t texels = job_.device.info().limits.maxTexelBufferElements;
-  if (!program_.storage && std::max(withRoom(bytes), withRoom(listBytes)) / 16 > texels) {
+  if (!program_.storage && std::max(withRoom(bytes + readAhead * rowBytes(program_.real)), withRoom(listBytes)) / 16 > texels) {
     program_.storage = true;  // from now on
     records_ = {}, lists_ = {};
     loadShader();
   }
   const auto use = program_.storage ? gpu::BufferUse::storage : gpu::BufferUse::texels;
-  reserve(job_.device, records_, bytes, use);
+  reserve(job_.device, records_, bytes + readAhead * rowBytes(program_.real), use);
   reserve(job_.device, lists_, listBytes, use);
   reserve(job_.device, state_, portioned_ ? lanes_ * stateBytes : 16, gpu::BufferUse::storage);
   builder_.write(records_.bytes(), lists_.bytes(), lanes_, kinds_);

@@ -3,12 +3,24 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
+
+#include "host/cast/wide.h"
 
 namespace solidcast {
 namespace {
 
 bool overlap(const Footprint& f, const Crop& area) {
   return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
+}
+
+WIDE std::array<int, 2> nearestOf(std::span<const SeenWithin> solids) {
+  std::uint32_t least = DepthScale::none, most = 0;
+  for (const SeenWithin& s : solids) {
+    const std::uint32_t nearest = s.more & 0xffff;
+    least = nearest < least ? nearest : least, most = nearest > most ? nearest : most;
+  }
+  return {static_cast<int>(least), static_cast<int>(most)};
 }
 
 }  // namespace
@@ -53,24 +65,19 @@ double partLeft(const ListSample& sample, const Crop& region, RealType type) {
 }
 
 void Sieve::sort(std::span<const std::vector<SeenWithin>* const> narrow) {
+  all_.clear();
+  for (const auto* solids : narrow) all_.insert(all_.end(), solids->begin(), solids->end());
+  all_.insert(all_.end(), wides_.begin(), wides_.end());
+  const auto [least, most] = nearestOf(all_);
+  least_ = least;
+  const auto bits = static_cast<int>(std::bit_width(static_cast<unsigned>(most - least)));
+  shift_ = std::max(0, bits - std::countr_zero(buckets));
   start_.fill(0);
-  std::size_t all = wides_.size();
-  const auto count = [&](const std::vector<SeenWithin>& solids) {
-    for (const SeenWithin& s : solids) ++start_[(s.nearest() >> shift) + 1u];
-  };
-  for (const auto* solids : narrow) count(*solids), all += solids->size();
-  count(wides_);
+  for (const SeenWithin& s : all_) ++start_[static_cast<std::size_t>((s.nearest() - least_) >> shift_) + 1];
   for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
-  sorted_.resize(all), origin_.resize(all);
-  std::uint32_t origin = 0;
-  const auto place = [&](const std::vector<SeenWithin>& solids) {
-    for (const SeenWithin& s : solids) {
-      const std::uint32_t to = start_[s.nearest() >> shift]++;
-      sorted_[to] = s, origin_[to] = origin++;
-    }
-  };
-  for (const auto* solids : narrow) place(*solids);
-  place(wides_);
+  order_.resize(all_.size());
+  for (std::uint32_t i = 0; i < all_.size(); ++i)
+    order_[start_[static_cast<std::size_t>((all_[i].nearest() - least_) >> shift_)]++] = i;
 }
 
 void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* const> narrow,
@@ -82,25 +89,25 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
       if (head.seen.hides != DepthScale::none && overlap(head.seen, depths.area()))
         wides_.push_back(within(head.seen, head.solid, depths.area()));
   sort(narrow);
-  if (sorted_.empty()) return;
-  kept_.assign(sorted_.size() / 64 + 1, 0);
+  if (all_.empty()) return;
+  kept_.assign(all_.size() / 64 + 1, 0);
   constexpr std::size_t together = Footprints::block;
   std::array<std::uint32_t, 4 * together> places, round;
   std::array<const Shape*, together> shapes;
   std::array<std::uint32_t, together> covering;
-  for (std::size_t looked = 0; looked < sorted_.size();) {
-    if (sorted_[looked].nearest() >> shift << shift > depths.deepest()) break;  // and so are all others
-    const std::size_t seen = depths.visible(sorted_, together, places, looked);
+  for (std::size_t looked = 0; looked < order_.size();) {
+    if (bucketOf(all_[order_[looked]].nearest()) > depths.deepest()) break;  // and so are all others
+    const std::size_t seen = depths.visible(all_, order_, together, places, looked);
     std::size_t count = 0, rounds = 0;
     const auto addShapes = [&] {
       footprints_.findCovers(
           std::span(shapes).first(count),
-          [&](std::size_t i, const Footprint& f, const Cover& cover) { depths.add(sorted_[covering[i]], f.hides, cover); });
+          [&](std::size_t i, const Footprint& f, const Cover& cover) { depths.add(all_[covering[i]], f.hides, cover); });
       count = 0;
     };
     for (const std::uint32_t at : std::span(places).first(seen)) {
-      const SeenWithin& s = sorted_[at];
-      kept_[origin_[at] / 64] |= std::uint64_t{1} << origin_[at] % 64;
+      const SeenWithin& s = all_[at];
+      kept_[at / 64] |= std::uint64_t{1} << at % 64;
       if (s.isDisc()) {
         round[rounds++] = at;
         __builtin_prefetch(discs.of + (s.solid - discs.first));
@@ -110,7 +117,7 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
         if (count == shapes.size()) addShapes();
       }
     }
-    depths.add(sorted_, std::span(round).first(rounds), discs);
+    depths.add(all_, std::span(round).first(rounds), discs);
     addShapes();
     depths.noteTiles();
   }
@@ -127,15 +134,17 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
       const std::size_t place = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
       while (list < narrow.size() && place - first >= narrow[list]->size()) first += narrow[list++]->size(), merge();
       if (list == narrow.size()) return;  // the rest are wide ones
-      patch.kept.push_back((*narrow[list])[place - first]);
+      patch.kept.push_back(all_[place]);
     }
   merge();
 }
 
 void Sieve::siftKept(ListPatch& patch) {
   places_.resize(patch.kept.size());
+  order_.resize(patch.kept.size());
+  std::iota(order_.begin(), order_.end(), 0);
   std::size_t looked = 0;
-  const std::size_t seen = patch.depths.visible(patch.kept, patch.kept.size() + 1, places_, looked);
+  const std::size_t seen = patch.depths.visible(patch.kept, order_, order_.size() + 1, places_, looked);
   for (std::size_t i = 0; i < seen; ++i) patch.kept[i] = patch.kept[places_[i]];
   patch.kept.resize(seen);
 }

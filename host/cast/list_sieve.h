@@ -57,17 +57,21 @@ class Sieve {
   void siftKept(ListPatch& patch);
 
  private:
-  static constexpr int shift = 5;  // of depths that count as one: 128 an octave
-  static constexpr std::size_t buckets = std::size_t{1} << 16 >> shift;
+  static constexpr std::size_t buckets = 512;
 
   void sort(std::span<const std::vector<SeenWithin>* const> narrow);
+  /// Where the depths of its bucket begin.
+  DepthCode bucketOf(DepthCode nearest) const {
+    return static_cast<DepthCode>(least_ + ((nearest - least_) >> shift_ << shift_));
+  }
 
   std::span<const SolidEntry> solids_;
   Footprints& footprints_;
   std::vector<SeenWithin> wides_;
-  std::vector<SeenWithin> sorted_;     // by depths where they begin, about
-  std::vector<std::uint32_t> origin_;  // of these: the place in all of `narrow`
-  std::vector<std::uint64_t> kept_;    // bits by that place
+  std::vector<SeenWithin> all_;       // list by list, the wide ones last
+  std::vector<std::uint32_t> order_;  // places of these, by depths where they begin, about
+  int least_ = 0, shift_ = 0;         // of these depths: the first, and how many bits of their differences are left out
+  std::vector<std::uint64_t> kept_;   // bits by place
   std::vector<std::uint32_t> places_;
   std::array<std::uint32_t, buckets + 1> start_;
 };
