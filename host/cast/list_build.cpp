@@ -84,7 +84,7 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
   std::size_t before = 0;  // what `next` had come to when the round began
   for (std::size_t from = 0, to; from < solids.size(); from = to) {
     to = roundEnd(from, solids.size());
-    part.newWides = part.heads[wide].size();
+    part.newWides = part.wides.size();
     for (std::size_t at; (at = rounds.solid.fetch_add(few)) < to;)
       part.lookForSieve(solids, at, std::min(at + few, to), footprints, from == 0 ? nullptr : &tileLimits_,
                         discs_.get() + (at - from));
@@ -99,7 +99,7 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
       }
       for (std::size_t t = 0; t < threads; ++t) {
         narrowOnes[t] = &parts_[t]->seenIn[at];
-        wideOnes[t] = std::span(parts_[t]->heads[wide]).subspan(parts_[t]->newWides);
+        wideOnes[t] = std::span(parts_[t]->wides).subspan(parts_[t]->newWides);
       }
       sieve.sift(patch, narrowOnes, wideOnes, {discs_.get(), from});
       for (std::size_t t = 0; t < threads; ++t) parts_[t]->seenIn[at].clear();
@@ -151,14 +151,13 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
     for (std::size_t k = t; k < parts_.size(); k += threads) parts_[k]->start(grid_);
     auto own = footprints();
     if (hiding) sift(t, threads, packs, rounds, own);
-    else part.look(world.solids, solids * t / threads, solids * (t + 1) / threads, own);
-    part.pack(part.heads[narrow], narrow, tileLimits_, world, type, eyeForms, eye);
+    else part.look(solids * t / threads, solids * (t + 1) / threads, own, tileLimits_, world, type, eyeForms, eye);
     const auto wideTile = [&](int pixel) { return static_cast<std::uint32_t>(pixel / (grid_.wide * ListGrid::tile)); };
-    std::erase_if(part.heads[wide], [&](const ListHead& head) {
+    std::erase_if(part.wides, [&](const ListHead& head) {
       const Footprint& f = head.seen;
       return !wideLimits_.some(wideTile(f.x0), wideTile(f.y0), wideTile(f.x1), wideTile(f.y1), f.nearest);
     });
-    part.pack(part.heads[wide], wide, wideLimits_, world, type, eyeForms, eye);
+    part.pack(part.wides, wide, wideLimits_, world, type, eyeForms, eye);
   });
   grazing_ = farSphere_ = boxOnFace_ = false;
   for (const auto& part : parts_) {

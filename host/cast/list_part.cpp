@@ -108,7 +108,7 @@ void ListBuilder::Part::start(const ListGrid& grid) {
   listed.clear();
   seenIn.resize(std::size_t{1} * grid.wideAcross() * grid.wideDown());
   for (auto& of : seenIn) of.clear();
-  for (auto& of : heads) of.clear();
+  wides.clear();
   newWides = 0;
   for (auto& level : found)
     for (Arena& arena : level) arena.clear();
@@ -137,20 +137,6 @@ void forEachBlock(std::span<const SolidEntry> solids, std::size_t from, std::siz
 
 }  // namespace
 
-void ListBuilder::Part::look(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
-                             Footprints& footprints) {
-  forEachBlock(solids, from, to, [&](std::span<const Shape* const> shapes, std::uint32_t first) {
-    footprints.find(shapes, [&](std::size_t i, const Footprint& f) {
-      fetchNext(solids, first + i);
-      if (!f.seen()) return;
-      ListHead& head = heads[levelOf(f, grid_)].emplace_back();
-      head.seen = f, head.solid = first + static_cast<std::uint32_t>(i);
-    });
-  });
-  // Of the whole scene, seen or not: so that fast has the same bits in every plan.
-  farSphere = footprints.farSphere();
-}
-
 void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
                                      Footprints& footprints, const TileLimits* limits, SmallDisc* discs) {
   const int shift = std::countr_zero(static_cast<std::uint32_t>(grid_.wide * ListGrid::tile));
@@ -161,7 +147,7 @@ void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::si
     const auto anywhere = [&](std::size_t i, const Footprint& f) {
       if (!f.seen()) return;
       const std::uint32_t solid = first + static_cast<std::uint32_t>(i);
-      if (levelOf(f, grid_) == wide) return heads[wide].push_back({f, solid});
+      if (levelOf(f, grid_) == wide) return wides.push_back({f, solid});
       for (std::int32_t y = f.y0 >> shift; y <= f.y1 >> shift; ++y)
         for (std::int32_t x = f.x0 >> shift; x <= f.x1 >> shift; ++x) {
           bins[y * across + x].push_back(within(f, solid, grid_.wideArea(x, y)));
@@ -203,7 +189,7 @@ class ListBuilder::Part::Packing {
  private:
   struct Many {
     RecordBatch records;
-    std::array<const ListHead*, RecordBatch::block> heads;
+    std::array<ListHead, RecordBatch::block> heads;
   };
 
   void put(const auto& solid, const ListHead& head) { alone(solid, head); }
@@ -214,7 +200,7 @@ class ListBuilder::Part::Packing {
   void together(const auto& solid, const ListHead& head, std::optional<Many>& many) {
     if (!eyeForms_ || type_ != RealType::f32) return alone(solid, head);
     if (!many) many.emplace(Many{RecordBatch(kindNumber(solid)), {}});
-    many->heads[many->records.size()] = &head;
+    many->heads[many->records.size()] = head;
     if (!many->records.add(solid, head.solid, eye_.plain)) return alone(solid, head);
     if (many->records.full()) flush(many);
   }
@@ -224,7 +210,7 @@ class ListBuilder::Part::Packing {
     const RecordBatch& records = many->records;
     const std::uint32_t rows = rowsOf(static_cast<std::size_t>(records.kind()), true);
     for (std::size_t i = 0, count = many->records.pack(eye_.plain); i < count; ++i) {
-      const ListHead& head = *many->heads[i];
+      const ListHead& head = many->heads[i];
       if (records.poor(i)) {
         std::visit([&](const auto& solid) { alone(solid, head); }, world_.solids[head.solid].shape);
         continue;
@@ -267,6 +253,24 @@ class ListBuilder::Part::Packing {
   const EyeFrames& eye_;
   std::optional<Many> spheres_, triangles_, quads_;
 };
+
+void ListBuilder::Part::look(std::size_t from, std::size_t to, Footprints& footprints, const TileLimits& limits,
+                             const World& world, RealType type, bool eyeForms, const EyeFrames& eye) {
+  const std::span<const SolidEntry> solids = world.solids;
+  Packing packing(*this, narrow, limits, world, type, eyeForms, eye);
+  forEachBlock(solids, from, to, [&](std::span<const Shape* const> shapes, std::uint32_t first) {
+    footprints.find(shapes, [&](std::size_t i, const Footprint& f) {
+      fetchNext(solids, first + i);
+      if (!f.seen()) return;
+      const ListHead head{f, first + static_cast<std::uint32_t>(i)};
+      if (levelOf(f, grid_) == wide) wides.push_back(head);
+      else packing.add(head);
+    });
+  });
+  packing.finish();
+  // Of the whole scene, seen or not: so that fast has the same bits in every plan.
+  farSphere = footprints.farSphere();
+}
 
 void ListBuilder::Part::pack(std::span<const ListHead> heads, ListLevel level, const TileLimits& limits,
                              const World& world, RealType type, bool eyeForms, const EyeFrames& eye) {

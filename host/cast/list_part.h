@@ -46,9 +46,8 @@ class Arena {
 struct ListBuilder::Part {
   // Where hidden solids are looked for: of a round's solids what is seen, by the wide tile.
   std::vector<std::vector<SeenWithin>> seenIn;
-  // All others, by where they are listed.
-  std::array<std::vector<ListHead>, 2> heads;
-  std::size_t newWides = 0;  // the first of the round
+  std::vector<ListHead> wides;  // that are listed in wide tiles
+  std::size_t newWides = 0;     // the first of the round
   // By solid: how many tiles are to have it, these tiles, its record.
   std::array<std::array<Arena, kindCount>, 2> found;
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> tiles;  // entries by tile; then where the next goes
@@ -56,9 +55,10 @@ struct ListBuilder::Part {
   std::vector<std::uint32_t> listed;  // solids, some more than once
 
   void start(const ListGrid& grid);
-  /// Where each solid is seen; to heads.
-  void look(std::span<const SolidEntry> solids, std::size_t from, std::size_t to, Footprints& footprints);
-  /// The same; to seenIn, but for the wide ones, and without those that `limits` hide. `discs`: of the spheres, from `from` on.
+  /// Records of those that are seen, and of the wide ones where.
+  void look(std::size_t from, std::size_t to, Footprints& footprints, const TileLimits& limits, const World& world,
+            RealType type, bool eyeForms, const EyeFrames& eye);
+  /// Where each is seen; to seenIn, but for the wide ones, and without those that `limits` hide. `discs`: of the spheres, from `from` on.
   void lookForSieve(std::span<const SolidEntry> solids, std::size_t from, std::size_t to, Footprints& footprints,
                     const TileLimits* limits, SmallDisc* discs);
   /// Records of solids, for those of the tiles that may see them by `limits`.
