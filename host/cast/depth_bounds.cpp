@@ -267,7 +267,8 @@ SeenWithin within(const Footprint& f, std::uint32_t solid, const Crop& area) {
   };
   // Of 2x2 tiles, what is left of them where the area begins after the first.
   const int right = f.x0 / side < area.x / side, lower = f.y0 / side < area.y / side;
-  const std::uint32_t misses = f.misses >> (right + 2 * lower), covers = f.hides != DepthScale::none ? SeenWithin::shape : 0;
+  const std::uint32_t misses = f.misses >> (right + 2 * lower),
+                      covers = f.hides != DepthScale::none ? SeenWithin::shape : 0;
   return {pixel(std::max(f.x0 - area.x, 0), std::max(f.y0 - area.y, 0)),
           pixel(std::min(f.x1 - area.x, area.width - 1), std::min(f.y1 - area.y, area.height - 1)),
           covers | misses << 16 | f.nearest, solid};
@@ -319,8 +320,7 @@ void DepthBounds::noteTiles() {
 }
 
 std::size_t DepthBounds::visible(std::span<const SeenWithin> solids, std::span<const std::uint32_t> order,
-                                 std::size_t mostCovering, std::span<std::uint32_t> places,
-                                 std::size_t& looked) const {
+                                 std::size_t mostCovering, std::span<std::uint32_t> places, std::size_t& looked) const {
   return visibleOf(depth_.data(), stride_, tiles_, solids, order, mostCovering, places, looked);
 }
 

@@ -38,10 +38,12 @@ inline std::uint64_t smallDisc(double x, double y, float radius, std::int32_t hi
   constexpr double per = SmallDisc::perPixel;
   const float size = (radius - 0.0225f) * static_cast<float>(per);
   const bool small = (size >= 1) & (size < SmallDisc::most + 1) & (x > 0) & (y > 0) & (x < 1 << 15) & (y < 1 << 15);
-  const auto X = static_cast<std::int32_t>(small ? x * per + 0.5 : 0), Y = static_cast<std::int32_t>(small ? y * per + 0.5 : 0);
+  const auto X = static_cast<std::int32_t>(small ? x * per + 0.5 : 0),
+             Y = static_cast<std::int32_t>(small ? y * per + 0.5 : 0);
   const auto R = static_cast<std::int32_t>(small ? size : 0);
   // No types of 16 bits: for their sake the compiler would take vectors of so many numbers.
-  const auto place = static_cast<std::uint32_t>((X & 0xffff) | Y << 16), rest = static_cast<std::uint32_t>(R | hides << 16);
+  const auto place = static_cast<std::uint32_t>((X & 0xffff) | Y << 16),
+             rest = static_cast<std::uint32_t>(R | hides << 16);
   return std::uint64_t{rest} << 32 | place;
 }
 

@@ -25,7 +25,7 @@ struct ImageCaster::Impl {
   CastStats stats;
   std::vector<std::unique_ptr<Pass>> passes;
   int bandRows = 0;
-  Band band;  // kept, so that its memory serves the next
+  Band band;                                         // kept, so that its memory serves the next
   bool customSolids = false, customColours = false;  // what the passes were made for
 
   const CastOptions options;  // passes refer to it

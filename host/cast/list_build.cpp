@@ -65,7 +65,8 @@ constexpr std::size_t firstRound = 131072, few = 16 * Footprints::block;
 std::size_t roundEnd(std::size_t from, std::size_t solids) { return std::min(solids, std::max(firstRound, 4 * from)); }
 std::size_t mostInRound(std::size_t solids) {
   std::size_t most = 0;
-  for (std::size_t from = 0, to; from < solids; from = to) to = roundEnd(from, solids), most = std::max(most, to - from);
+  for (std::size_t from = 0, to; from < solids; from = to)
+    to = roundEnd(from, solids), most = std::max(most, to - from);
   return most;
 }
 }  // namespace

@@ -95,7 +95,7 @@ class ListBuilder {
   std::size_t rows_ = 0, listed_ = 0;
   // [narrow 0 or wide 1][kind]: by tile, and for the wide ones the count beside
   std::array<std::array<std::vector<std::uint32_t>, kindCount>, 2> first_, count_;
-  std::vector<std::uint32_t> next_;  // layOut's
+  std::vector<std::uint32_t> next_;           // layOut's
   std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles()
   std::uint32_t longest_ = 0;
 };

@@ -166,7 +166,9 @@ void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::si
                            static_cast<DepthCode>(b.nearest[i])))
           continue;
         if (r.patch[i] == Routes::none) anywhere(b.at[i], footprints.of(b, i, shapes));
-        else r.forEach(i, first + b.at[i], static_cast<std::size_t>(across), [&](std::size_t at, const SeenWithin& s) { bins[at].push_back(s); });
+        else
+          r.forEach(i, first + b.at[i], static_cast<std::size_t>(across),
+                    [&](std::size_t at, const SeenWithin& s) { bins[at].push_back(s); });
       }
     };
     footprints.findBatches(shapes, true, batch, anywhere);

@@ -14,8 +14,7 @@ inline std::uint32_t coversOf(const Footprints::Spheres& batch, std::size_t i) {
 }
 
 template <class Batch>
-inline __attribute__((always_inline)) void routesOf(const Batch& b, int shift,
-                                                    std::int32_t across, Routes& r) {
+inline __attribute__((always_inline)) void routesOf(const Batch& b, int shift, std::int32_t across, Routes& r) {
   const std::int32_t inside = (1 << shift) - 1;
   for (std::size_t i = 0, count = b.count; i < count; ++i) {
     const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
@@ -38,8 +37,7 @@ inline __attribute__((always_inline)) void routesOf(const Batch& b, int shift,
 WIDE void route(const Footprints::Spheres& batch, int shift, std::int32_t across, Routes& routes) {
   routesOf(batch, shift, across, routes);
 }
-WIDE void route(const Footprints::Triangles& batch, int shift, std::int32_t across,
-                Routes& routes) {
+WIDE void route(const Footprints::Triangles& batch, int shift, std::int32_t across, Routes& routes) {
   routesOf(batch, shift, across, routes);
 }
 WIDE void route(const Footprints::Quads& batch, int shift, std::int32_t across, Routes& routes) {

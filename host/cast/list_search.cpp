@@ -17,7 +17,7 @@ struct ListPush {
 constexpr std::uint32_t groupLanes = 64;  // lists.comp: local_size_x
 /// Entries that a dispatch walks: llvmpipe stops all loops of an invocation after 65535 rounds without a word.
 constexpr std::uint32_t mostEntries = 65000;
-constexpr std::size_t readAhead = 2;  // lists.comp: rows that it loads behind the last one
+constexpr std::size_t readAhead = 2;         // lists.comp: rows that it loads behind the last one
 constexpr std::size_t stateBytes = 40 * 16;  // lists.comp: State, by tile, at most
 
 /// What is taken for a buffer of so many bytes, so that it serves the next scene too.
@@ -88,7 +88,8 @@ void ListSearch::build(const PassTarget& target, const Band& band) {
   const std::size_t bytes = builder_.rows() * rowBytes(program_.real);
   const std::size_t listBytes = lanes_ * laneTexels * 16;
   const std::size_t texels = job_.device.info().limits.maxTexelBufferElements;
-  if (!program_.storage && std::max(withRoom(bytes + readAhead * rowBytes(program_.real)), withRoom(listBytes)) / 16 > texels) {
+  if (!program_.storage &&
+      std::max(withRoom(bytes + readAhead * rowBytes(program_.real)), withRoom(listBytes)) / 16 > texels) {
     program_.storage = true;  // from now on
     records_ = {}, lists_ = {};
     loadShader();

@@ -100,9 +100,10 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
     const std::size_t seen = depths.visible(all_, order_, together, places, looked);
     std::size_t count = 0, rounds = 0;
     const auto addShapes = [&] {
-      footprints_.findCovers(
-          std::span(shapes).first(count),
-          [&](std::size_t i, const Footprint& f, const Cover& cover) { depths.add(all_[covering[i]], f.hides, cover); });
+      footprints_.findCovers(std::span(shapes).first(count),
+                             [&](std::size_t i, const Footprint& f, const Cover& cover) {
+                               depths.add(all_[covering[i]], f.hides, cover);
+                             });
       count = 0;
     };
     for (const std::uint32_t at : std::span(places).first(seen)) {

@@ -19,7 +19,7 @@ std::string solidName(const World& world, std::int32_t index) {
   if (index < 0) return "nothing";
   const SolidEntry& solid = world.solids[static_cast<std::size_t>(index)];
   return solid.name.empty() ? std::string(kindLabel(kindNumber(solid.shape))) + " " + std::to_string(index)
-                            : solid.name;
+                            : solid.name.text();
 }
 
 std::string decimal(f128 x) { return printed("%.18Qg", x); }

@@ -70,7 +70,7 @@ void checkScene(const Scene& scene, std::vector<std::string>& warnings) {
       found.clear();
       checkShape(solid.shape, found);
       report(found);
-      names.add(solid.name, kindName(solid.shape) + numbered(" ", i), "");
+      names.add(solid.name.text(), kindName(solid.shape) + numbered(" ", i), "");
     }
     for (const CustomSolid& custom : scene.world.customSolids) names.add(custom.name, "custom", "");
     for (std::size_t i = 0; i < scene.world.groups.size(); ++i) {
@@ -93,7 +93,7 @@ std::string solidName(const World& world, std::uint32_t index) {
     return custom.name.empty() ? numbered("custom ", index) : custom.name;
   }
   const SolidEntry& solid = world.solids[index];
-  return solid.name.empty() ? kindName(solid.shape) + numbered(" ", index) : solid.name;
+  return solid.name.empty() ? kindName(solid.shape) + numbered(" ", index) : solid.name.text();
 }
 
 }  // namespace solidcast

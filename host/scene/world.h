@@ -4,8 +4,10 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -74,8 +76,31 @@ struct CustomSolid {
 
 using Shape = std::variant<InfinitePlane, AABox, Sphere, Disc, Triangle, Quad, Quadric>;
 
+/// A text that is mostly empty, and then takes no more than a pointer: a picture reads every solid, and their bytes take time.
+class RareName {
+ public:
+  RareName() = default;
+  RareName(std::string text) : text_(text.empty() ? nullptr : new std::string(std::move(text))) {}
+  RareName(const char* text) : RareName(std::string(text)) {}
+  RareName(const RareName& other) : text_(other.text_ ? new std::string(*other.text_) : nullptr) {}
+  RareName(RareName&&) noexcept = default;
+  RareName& operator=(RareName other) noexcept {
+    text_ = std::move(other.text_);
+    return *this;
+  }
+  bool empty() const { return !text_; }
+  const std::string& text() const {
+    static const std::string none;
+    return text_ ? *text_ : none;
+  }
+  bool operator==(const RareName& other) const { return text() == other.text(); }
+
+ private:
+  std::unique_ptr<const std::string> text_;
+};
+
 struct SolidEntry {
-  std::string name;  // unique in the scene; may be empty
+  RareName name;  // unique in the scene; may be empty
   Shape shape;
   std::uint32_t group = 0;  // index into World::groups
   bool operator==(const SolidEntry&) const = default;

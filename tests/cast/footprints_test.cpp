@@ -194,9 +194,8 @@ TEST(Routes, GoWhereTheSolidIsSeen) {
           continue;
         }
         std::map<std::size_t, SeenWithin> parts;
-        routes.forEach(i, 5, across, [&](std::size_t at, const SeenWithin& s) {
-          EXPECT_TRUE(parts.emplace(at, s).second);
-        });
+        routes.forEach(i, 5, across,
+                       [&](std::size_t at, const SeenWithin& s) { EXPECT_TRUE(parts.emplace(at, s).second); });
         for (int y = f.y0 / side; y <= f.y1 / side; ++y)
           for (int x = f.x0 / side; x <= f.x1 / side; ++x) {
             ASSERT_TRUE(parts.contains(static_cast<std::size_t>(y * across + x)));

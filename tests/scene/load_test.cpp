@@ -90,7 +90,7 @@ TEST(Load, GroupsKeepDepthFirstOrder) {
   const World& world = scene.world;
   ASSERT_EQ(world.solids.size(), 5u);
   std::string order;
-  for (const SolidEntry& solid : world.solids) order += solid.name;
+  for (const SolidEntry& solid : world.solids) order += solid.name.text();
   EXPECT_EQ(order, "abcde");
   const std::vector<GroupEntry> groups = {{"", 0, {{false, 0}, {true, 1}, {false, 4}, {true, 3}}},
                                           {"outer", 0, {{false, 1}, {true, 2}, {false, 3}}},
