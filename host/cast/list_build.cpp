@@ -72,8 +72,8 @@ std::size_t mostInRound(std::size_t solids) {
 }  // namespace
 
 /// A round's solids are looked at a few at a time, then what is seen of them by patches, so that each of the threads writes
-/// what is its own, and none waits for another. Few solids are one round; of many those of later rounds are dropped at once where the earlier hide
-/// them.
+/// what is its own, and none waits for another. Few solids are one round; of many those of later rounds are dropped at once
+/// where the earlier hide them.
 void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds,
                        Footprints& footprints) {
   const std::span<const SolidEntry> solids = packs.world.solids;

@@ -8,9 +8,9 @@ struct Routes {
   static constexpr std::int32_t none = -1;
   static constexpr std::uint32_t right = 1, below = 2;
 
-  alignas(
-      64) std::int32_t patch[Footprints::block];  // the first wide tile; `none`: not in 2x2, or not plain, or not seen
-  alignas(64) std::uint32_t beyond[Footprints::block];  // it is in the next one as well
+  // The first wide tile; `none`: in more than 2x2, or not plain, or not seen. And whether it is in the next one as well.
+  alignas(64) std::int32_t patch[Footprints::block];
+  alignas(64) std::uint32_t beyond[Footprints::block];
   // Of SeenWithin: in the first wide tile; and the last pixel in the last wide tile.
   alignas(64) std::uint32_t first[Footprints::block], last[Footprints::block], more[Footprints::block],
       end[Footprints::block];

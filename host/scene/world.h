@@ -76,7 +76,7 @@ struct CustomSolid {
 
 using Shape = std::variant<InfinitePlane, AABox, Sphere, Disc, Triangle, Quad, Quadric>;
 
-/// A text that is mostly empty, and then takes no more than a pointer: a picture reads every solid, and their bytes take time.
+/// A text that is mostly empty, and then takes no more than a pointer: a picture reads every solid, and bytes take time.
 class RareName {
  public:
   RareName() = default;
