@@ -240,7 +240,7 @@ TEST(Sieve, KeepsWhatIsNearestInSomePixel) {
     for (std::uint32_t i = 0; i < world.solids.size(); ++i) {
       const Footprint f = seen.emplace_back(m.seen(world.solids[i].shape));
       if (!f.seen() || !meet(f, area)) continue;
-      if (i + 1 == world.solids.size()) wide.push_back({f, i});
+      if (i + 1 == world.solids.size() && area.x == 0) wide.push_back({f, i});
       else (i / 32 % 2 ? first : second).push_back(within(f, i, area));  // as two threads take them
     }
     Sieve sieve(world.solids, m.footprints);
