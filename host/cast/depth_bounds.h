@@ -91,9 +91,9 @@ class DepthBounds {
   const TileLimits& tiles() const { return tiles_; }
   DepthCode deepest() const { return deepest_; }
 
-  /// Of `solids` in that order the places of those that can be seen, as far as is known: one that is in few tiles by these and by its pixels, a larger one
-  /// tile by tile. Ends when the places are full or so many of those seen may cover something, or up to 63 more; `looked`:
-  /// how far it came.
+  /// Of `solids` in that order the places of those that can be seen, as far as is known: one that is in few tiles by these
+  /// and by its pixels, a larger one tile by tile. Ends when the places are full or so many of those seen may cover
+  /// something, or up to 63 more; `looked`: how far it came.
   std::size_t visible(std::span<const SeenWithin> solids, std::span<const std::uint32_t> order,
                       std::size_t mostCovering, std::span<std::uint32_t> places, std::size_t& looked) const;
   bool hides(const SeenWithin& seen) const {
