@@ -191,7 +191,7 @@ class EmbreePeer final : public Peer {
     std::vector<std::array<std::size_t, kinds>> firsts(static_cast<std::size_t>(shares) + 1);
     workers_.run(shares, [&](int i) {
       auto& counts = firsts[static_cast<std::size_t>(i) + 1];
-      for (std::size_t k = start(i); k < start(i + 1); ++k) ++counts[solids_[k].shape.index()];
+      for (std::size_t k = start(i); k < start(i + 1); ++k) ++counts[solids_.shape(k).index()];
     });
     for (std::size_t i = 1; i < firsts.size(); ++i)
       for (std::size_t kind = 0; kind < kinds; ++kind) firsts[i][kind] += firsts[i - 1][kind];
@@ -203,7 +203,7 @@ class EmbreePeer final : public Peer {
     workers_.run(shares, [&](int i) {
       std::array<std::size_t, kinds> at = firsts[static_cast<std::size_t>(i)];
       for (std::size_t k = start(i); k < start(i + 1); ++k) {
-        const Shape& shape = solids_[k].shape;
+        const ShapeRef shape = solids_.shape(k);
         writeSolid(shape, targets[shape.index()], at[shape.index()]++);
       }
     });
@@ -261,14 +261,13 @@ class EmbreePeer final : public Peer {
     return geometry;
   }
 
-  void writeSolid(const Shape& shape, const Target& target, std::size_t at) {
+  void writeSolid(ShapeRef shape, const Target& target, std::size_t at) {
     const std::size_t kind = shape.index();
-    std::visit([&](const auto& solid) { write(solid, target.numbers + at * static_cast<std::size_t>(kFloats[kind])); },
-               shape);
-    if (const auto* s = std::get_if<Disc>(&shape)) put(target.normals + 3 * at, glm::normalize(vec(s->normal)));
-    if (const auto* s = std::get_if<InfinitePlane>(&shape)) users_[plane].boxes[at] = bounds(*s);
-    if (const auto* s = std::get_if<AABox>(&shape)) users_[box].boxes[at] = bounds(*s);
-    if (const auto* s = std::get_if<Quadric>(&shape)) users_[quadric].boxes[at] = bounds(*s);
+    shape.visit([&](const auto& solid) { write(solid, target.numbers + at * static_cast<std::size_t>(kFloats[kind])); });
+    if (const auto* s = shape.getIf<Disc>()) put(target.normals + 3 * at, glm::normalize(vec(s->normal)));
+    if (const auto* s = shape.getIf<InfinitePlane>()) users_[plane].boxes[at] = bounds(*s);
+    if (const auto* s = shape.getIf<AABox>()) users_[box].boxes[at] = bounds(*s);
+    if (const auto* s = shape.getIf<Quadric>()) users_[quadric].boxes[at] = bounds(*s);
     const auto corners = static_cast<std::size_t>(kCorners[kind]);
     for (std::size_t i = 0; i < corners; ++i)
       target.corners[corners * at + i] = static_cast<unsigned>(corners * at + i);
@@ -280,7 +279,7 @@ class EmbreePeer final : public Peer {
     std::vector<RTCBounds> boxes;
   };
 
-  const std::vector<SolidEntry>& solids_;
+  const Solids& solids_;
   Light light_;
   bool packets_;
   const Kernels& kernels_;

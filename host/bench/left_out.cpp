@@ -31,7 +31,7 @@ Triple along(const Triple& from, const Triple& direction, double by) {
 /// it adds is the code and one solid's test.
 void addMissingKinds(Scene& scene) {
   bool there[std::variant_size_v<Shape>] = {};
-  for (const SolidEntry& solid : scene.world.solids) there[solid.shape.index()] = true;
+  for (std::size_t kind = 0; kind < std::size(there); ++kind) there[kind] = scene.world.solids.count(kind) > 0;
   Triple c{}, forward{};
   std::visit([&](const auto& camera) { c = camera.center, forward = camera.forward; }, scene.camera);
   const Triple p = along(c, forward, -5), q = along(p, {1, 2, 3}, 0.1), r = along(p, {3, -1, 1}, 0.1);

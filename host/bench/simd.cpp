@@ -83,8 +83,9 @@ class SimdPeer final : public Peer {
   Lap run() override {
     Stopwatch watch;
     Records records(std::visit([](const auto& camera) { return vec(camera.center); }, scene_.camera));
-    for (const SolidEntry& solid : scene_.world.solids)
-      std::visit([&](const auto& shape) { records.add(shape); }, solid.shape);
+    const Solids& solids = scene_.world.solids;
+    for (std::size_t i = 0; i < solids.size(); ++i)
+      solids.shape(i).visit([&](const auto& shape) { records.add(shape); });
     const SimdScene scene = records.scene();
     const Span build = watch.lap();
     const RayView rays = rays_.view();

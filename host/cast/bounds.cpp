@@ -116,8 +116,8 @@ std::optional<Bounds> quickBounds(const Quadric& quadric) {
   return boundsOfSolid(quadric);
 }
 
-std::optional<Bounds> boundsOf(const Shape& shape) {
-  return std::visit([](const auto& s) { return boundsOfSolid(s); }, shape);
+std::optional<Bounds> boundsOf(ShapeRef shape) {
+  return shape.visit([](const auto& s) { return boundsOfSolid(s); });
 }
 
 }  // namespace solidcast

@@ -12,7 +12,7 @@ struct Bounds {
 
 /// Nothing for a solid without an end: infinite planes, quadrics that are no ellipsoids (or so nearly none that binary128
 /// cannot tell), and whatever reaches beyond 2^100, where fp32 has no room for differences and their products.
-std::optional<Bounds> boundsOf(const Shape& shape);
+std::optional<Bounds> boundsOf(ShapeRef shape);
 
 /// The same, wider by 2^-24, in a fiftieth of the time.
 std::optional<Bounds> quickBounds(const Quadric& quadric);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "host/cast/wide.h"
 
@@ -30,6 +31,39 @@ inline void store(const Footprints::View& v, const Slopes& s, bool plain, double
   const std::int32_t beyond = v.scale.ends(static_cast<float>(hides * (1 + 1e-6)));
   r.hides[i] = covers ? beyond : DepthScale::none;
   r.plain[i] = plain;
+}
+
+/// Of `count` solids, as a batch takes them from `to` on: spheres as they are, corners from the eye.
+WIDE void numbersOf(const Sphere* __restrict solids, std::size_t count, const Triple&, Footprints::Spheres& __restrict b,
+                    std::size_t to) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Sphere s = solids[i];
+    b.v[0][to + i] = s.center[0], b.v[1][to + i] = s.center[1], b.v[2][to + i] = s.center[2];
+    b.v[3][to + i] = s.radius;
+  }
+}
+template <class Solid>
+inline __attribute__((always_inline)) void cornersOf(const Solid* __restrict solids, std::size_t count, const Triple& from,
+                                                     auto& __restrict b, std::size_t to) {
+  const Triple origin = from;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto corners = outline(solids[i], origin);
+#pragma GCC unroll 9
+    for (std::size_t k = 0; k < corners.size(); ++k)
+#pragma GCC unroll 9
+      for (std::size_t axis = 0; axis < 3; ++axis) b.v[3 * k + axis][to + i] = corners[k][axis];
+  }
+}
+WIDE void numbersOf(const Triangle* solids, std::size_t count, const Triple& origin, Footprints::Triangles& b,
+                    std::size_t to) {
+  cornersOf(solids, count, origin, b, to);
+}
+WIDE void numbersOf(const Quad* solids, std::size_t count, const Triple& origin, Footprints::Quads& b, std::size_t to) {
+  cornersOf(solids, count, origin, b, to);
+}
+WIDE void numbersOf(const AABox* solids, std::size_t count, const Triple& origin, Footprints::Boxes& b,
+                    std::size_t to) {
+  cornersOf(solids, count, origin, b, to);
 }
 
 /// In SmallDisc's units, which moves the centre by up to 2^-6 pixels each way: the radius gives way by sqrt 2 of that, and by
@@ -254,32 +288,69 @@ Footprints::Footprints(const Silhouette& silhouette, const Crop& region, const F
   view_.edges = silhouette.centresAlone() ? view_.margin : 1e9;
 }
 
-template <class Corners>
-void Footprints::add(const Corners& corners, auto& batch, std::size_t at) {
-  for (std::size_t k = 0; k < corners.size(); ++k)
-    for (std::size_t i = 0; i < 3; ++i) batch.v[3 * k + i][batch.count] = corners[k][i];
-  batch.at[batch.count++] = static_cast<std::uint32_t>(at);
+void Footprints::gather(std::span<const ShapeRef> solids) {
+  spheres_.count = triangles_.count = quads_.count = boxes_.count = others_.count = 0;
+  const auto add = [](const auto& solid, const Triple& origin, auto& batch, std::size_t at) {
+    numbersOf(&solid, 1, origin, batch, batch.count);
+    batch.at[batch.count++] = static_cast<std::uint32_t>(at);
+  };
+  const Triple& origin = silhouette_.origin();
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const ShapeRef shape = solids[i];
+    const auto* triangle = vectors_ ? shape.getIf<Triangle>() : nullptr;
+    const auto* quad = vectors_ ? shape.getIf<Quad>() : nullptr;
+    const auto* box = vectors_ ? shape.getIf<AABox>() : nullptr;
+    if (const auto* sphere = shape.getIf<Sphere>()) add(*sphere, origin, spheres_, i);
+    else if (triangle) add(*triangle, origin, triangles_, i);
+    else if (quad) add(*quad, origin, quads_, i);
+    else if (box) add(*box, origin, boxes_, i);
+    else others_.at[others_.count++] = static_cast<std::uint32_t>(i);
+  }
 }
 
-void Footprints::calculate(std::span<const Shape* const> solids, Finding what) {
-  const bool covers = what == Finding::covers;
-  spheres_.count = triangles_.count = quads_.count = boxes_.count = others_.count = 0;
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    const Shape& shape = *solids[i];
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-      for (std::size_t k = 0; k < 3; ++k) spheres_.v[k][spheres_.count] = sphere->center[k];
-      spheres_.v[3][spheres_.count] = sphere->radius;
-      spheres_.at[spheres_.count++] = static_cast<std::uint32_t>(i);
-      continue;
+/// Those of a kind lie one after the other, so that nothing is asked of them one by one.
+void Footprints::gather(const Stretch& solids) {
+  std::uint32_t* lists[] = {spheres_.at, triangles_.at, quads_.at, boxes_.at, others_.at};
+  enum List { spheres, triangles, quads, boxes, others };
+  std::size_t counts[std::size(lists)] = {};
+  const auto listOf = [&](std::size_t index) {
+    return index == Kinds::indexOf<Sphere>()                ? spheres
+           : !vectors_                                      ? others
+           : index == Kinds::indexOf<Triangle>()            ? triangles
+           : index == Kinds::indexOf<Quad>()                ? quads
+           : index == Kinds::indexOf<AABox>()               ? boxes
+                                                            : others;
+  };
+  const auto place = [&](std::size_t i) { return solids.solids.place(solids.first + i); };
+  const Solids::Place first = place(0), last = place(solids.count - 1);
+  if (first.index == last.index && first.at + solids.count - 1 == last.at) {  // all of one kind
+    const List list = listOf(first.index);
+    std::iota(lists[list], lists[list] + solids.count, 0);
+    counts[list] = solids.count;
+  } else {
+    std::array<List, std::variant_size_v<Shape>> listOfKind;
+    for (std::size_t index = 0; index < listOfKind.size(); ++index) listOfKind[index] = listOf(index);
+    for (std::uint32_t i = 0; i < solids.count; ++i) {
+      const List list = listOfKind[place(i).index];
+      lists[list][counts[list]++] = i;
     }
-    const auto* triangle = vectors_ ? std::get_if<Triangle>(&shape) : nullptr;
-    const auto* quad = vectors_ ? std::get_if<Quad>(&shape) : nullptr;
-    const auto* box = vectors_ ? std::get_if<AABox>(&shape) : nullptr;
-    if (triangle) add(outline(*triangle, silhouette_.origin()), triangles_, i);
-    else if (quad) add(outline(*quad, silhouette_.origin()), quads_, i);
-    else if (box) add(outline(*box, silhouette_.origin()), boxes_, i);
-    else others_.at[others_.count++] = static_cast<std::uint8_t>(i);
   }
+  const auto fill = [&]<class Solid>(std::type_identity<Solid>, auto& batch, List list) {
+    batch.count = counts[list];
+    if (batch.count == 0) return;
+    const Solid* from = solids.solids.of<Solid>().data() + place(batch.at[0]).at;
+    batch.next = reinterpret_cast<const char*>(from + batch.count), batch.stride = sizeof(Solid);
+    numbersOf(from, batch.count, silhouette_.origin(), batch, 0);
+  };
+  fill(std::type_identity<Sphere>(), spheres_, spheres);
+  fill(std::type_identity<Triangle>(), triangles_, triangles);
+  fill(std::type_identity<Quad>(), quads_, quads);
+  fill(std::type_identity<AABox>(), boxes_, boxes);
+  others_.count = counts[others];
+}
+
+void Footprints::calculate(Finding what) {
+  const bool covers = what == Finding::covers;
   if (spheres_.count) {
     farSphere_ |= covers                   ? ofCoveringSpheres(view_, spheres_)
                   : what == Finding::discs ? ofDiscs(view_, spheres_)
@@ -292,8 +363,8 @@ void Footprints::calculate(std::span<const Shape* const> solids, Finding what) {
 }
 
 /// Pixel i is seen at i + 0.5, so that [a, b] holds centres from ceil(a - 0.5) to floor(b - 0.5).
-Footprint Footprints::ask(const Shape& shape) const {
-  const Rectangle r = std::visit([&](const auto& solid) { return silhouette_.rectangle(solid); }, shape);
+Footprint Footprints::ask(ShapeRef shape) const {
+  const Rectangle r = shape.visit([&](const auto& solid) { return silhouette_.rectangle(solid); });
   const std::int32_t nearest = view_.scale.begins(static_cast<float>(r.nearest * (1 - 1e-6)));
   Footprint f{0, 0, region_.width - 1, region_.height - 1, static_cast<DepthCode>(nearest), DepthScale::none, 0};
   if (r.everywhere) return f;

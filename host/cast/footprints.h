@@ -54,9 +54,9 @@ class Footprints {
   Footprints(const Silhouette& silhouette, const Crop& region, const Frame<double>& eye, RealType type,
              DepthScale scale = DepthScale());
 
-  /// Of at most `block` solids: seen(i, footprint) of the i-th, those of a kind in their order. That one hides something may
-  /// be said of one that does not.
-  void find(std::span<const Shape* const> solids, auto&& seen) {
+  /// Of at most `block` solids, a Stretch or a span of ShapeRef: seen(i, footprint) of the i-th, those of a kind in their order.
+  /// That one hides something may be said of one that does not.
+  void find(const auto& solids, auto&& seen) {
     findBatches(
         solids, false,
         [&](const auto& batch) {
@@ -66,20 +66,22 @@ class Footprints {
   }
   /// The same by kinds, for vectors: batch(batch), and seen(i, footprint) of what is in none. With `discs` of spheres, where
   /// asked for.
-  void findBatches(std::span<const Shape* const> solids, bool discs, auto&& batch, auto&& seen) {
-    calculate(solids, discs ? Finding::discs : Finding::seen);
+  void findBatches(const auto& solids, bool discs, auto&& batch, auto&& seen) {
+    gather(solids);
+    calculate(discs ? Finding::discs : Finding::seen);
     if (spheres_.count) batch(spheres_);
     if (triangles_.count) batch(triangles_);
     if (quads_.count) batch(quads_);
     if (boxes_.count) batch(boxes_);
-    for (std::size_t i = 0; i < others_.count; ++i) seen(others_.at[i], ask(*solids[others_.at[i]]));
+    for (std::size_t i = 0; i < others_.count; ++i) seen(others_.at[i], ask(solids[others_.at[i]]));
   }
-  Footprint of(const auto& batch, std::size_t i, std::span<const Shape* const> solids) const {
-    return batch.plain[i] ? footprint(batch, i) : ask(*solids[batch.at[i]]);
+  Footprint of(const auto& batch, std::size_t i, const auto& solids) const {
+    return batch.plain[i] ? footprint(batch, i) : ask(solids[batch.at[i]]);
   }
   /// covers(i, footprint, cover) of those that hide something.
-  void findCovers(std::span<const Shape* const> solids, auto&& covers) {
-    calculate(solids, Finding::covers);
+  void findCovers(std::span<const ShapeRef> solids, auto&& covers) {
+    gather(solids);
+    calculate(Finding::covers);
     eachCover(spheres_, covers), eachCover(triangles_, covers), eachCover(quads_, covers);
   }
   /// Some sphere of all so far, seen or not, needs sphere.glsl's FAR_SPHERES.
@@ -104,11 +106,16 @@ class Footprints {
     alignas(64) double v[NUMBERS][block];
     alignas(64) std::uint32_t at[block];  // the solid's place in the block
     std::size_t count = 0;
-    int corners;  // of Cover
+    const char* next;    // of a Stretch: where the kind's next solids lie
+    std::size_t stride;  // bytes of one
+    int corners;         // of Cover
     alignas(64) std::int32_t x0[block], y0[block], x1[block], y1[block], nearest[block], hides[block];
     alignas(64) std::int32_t plain[block], misses[block]{};  // it serves; Footprint::misses
     alignas(64) double cover[COVER][block];
   };
+  /// Into the caches, what comes a block later: solid by solid, while others are worked on; all at once they would wait for
+  /// each other.
+  static void fetchNext(const auto& batch, std::size_t i) { __builtin_prefetch(batch.next + i * batch.stride); }
   struct Spheres : Batch<4, 4> {
     alignas(64) std::uint64_t disc[block];  // SmallDisc's bits
   };
@@ -119,11 +126,12 @@ class Footprints {
   enum class Finding { seen, discs, covers };
 
  private:
-  /// All batches, where slopes are enough (or else the `plain` of spheres is false); others_ where not.
-  void calculate(std::span<const Shape* const> solids, Finding what);
-  Footprint ask(const Shape& shape) const;
-  template <class Corners>
-  static void add(const Corners& corners, auto& batch, std::size_t at);
+  /// The numbers of all batches, where slopes are enough (or else spheres alone); others_.
+  void gather(std::span<const ShapeRef> solids);
+  void gather(const Stretch& solids);
+  /// What is found of the batches; where slopes are not enough the `plain` of spheres is false.
+  void calculate(Finding what);
+  Footprint ask(ShapeRef shape) const;
   static Footprint footprint(const auto& batch, std::size_t i) {
     return {batch.x0[i],
             batch.y0[i],
@@ -152,7 +160,7 @@ class Footprints {
   Quads quads_;
   Boxes boxes_;
   struct {
-    std::array<std::uint8_t, block> at;
+    std::uint32_t at[block];
     std::size_t count = 0;
   } others_;
 };

@@ -196,11 +196,11 @@ void addSkips(Index& index, std::size_t root) {
 Index buildIndex(const World& world, double widened, unsigned threads) {
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::optional<Bounds>> bounds(world.solids.size());
-  inParallel(bounds.size(), [&](std::size_t i) { bounds[i] = boundsOf(world.solids[i].shape); });
+  inParallel(bounds.size(), [&](std::size_t i) { bounds[i] = boundsOf(world.solids.shape(i)); });
   std::array<std::vector<Item>, kindCount> bounded;
   std::array<std::vector<std::uint32_t>, kindCount> always;
   for (std::size_t i = 0; i < bounds.size(); ++i) {
-    const auto kind = static_cast<std::size_t>(kindNumber(world.solids[i].shape));
+    const auto kind = static_cast<std::size_t>(kindNumber(world.solids.shape(i)));
     const auto solid = static_cast<std::uint32_t>(i);
     if (bounds[i]) bounded[kind].push_back({boxOf(*bounds[i], widened), solid});
     else always[kind].push_back(solid);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "host/cast/list_packing.h"
 #include "host/cast/list_part.h"
 #include "host/cast/wide.h"
 
@@ -43,14 +44,6 @@ void ListBuilder::note(std::size_t patch) {
   wideLimits_.row(0)[patch] = depths.deepest();
 }
 
-/// What a picture's records are made for.
-struct ListBuilder::Packs {
-  const World& world;
-  RealType type;
-  bool eyeForms;
-  const EyeFrames& eye;
-};
-
 /// What threads have together while they sift.
 struct ListBuilder::Rounds {
   explicit Rounds(std::size_t threads) : together(static_cast<std::ptrdiff_t>(threads)) {}
@@ -76,12 +69,13 @@ std::size_t mostInRound(std::size_t solids) {
 /// where the earlier hide them.
 void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds,
                        Footprints& footprints) {
-  const std::span<const SolidEntry> solids = packs.world.solids;
+  const Solids& solids = packs.world.solids;
   Part& part = *parts_[thread];
   Sieve sieve(solids, footprints);
   std::vector<const std::vector<SeenWithin>*> narrowOnes(threads);
   std::vector<std::span<const ListHead>> wideOnes(threads);
   std::vector<ListHead> heads;
+  ListPacking packing(part, narrow, tileLimits_, packs);
   std::size_t before = 0;  // what `next` had come to when the round began
   for (std::size_t from = 0, to; from < solids.size(); from = to) {
     to = roundEnd(from, solids.size());
@@ -113,8 +107,9 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
         heads.push_back(
             {{s.x0() + area.x, s.y0() + area.y, s.x1() + area.x, s.y1() + area.y, s.nearest(), 0, s.misses()},
              s.solid});
-      part.pack(heads, narrow, tileLimits_, packs.world, packs.type, packs.eyeForms, packs.eye);
+      packing.add(heads);
     }
+    if (to == solids.size()) packing.finish();
     rounds.together.arrive_and_wait();
     before += patches_.size() + threads;  // each thread took one too many
     if (to == solids.size()) break;
@@ -152,13 +147,15 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
     for (std::size_t k = t; k < parts_.size(); k += threads) parts_[k]->start(grid_);
     auto own = footprints();
     if (hiding) sift(t, threads, packs, rounds, own);
-    else part.look(solids * t / threads, solids * (t + 1) / threads, own, tileLimits_, world, type, eyeForms, eye);
+    else part.look(solids * t / threads, solids * (t + 1) / threads, own, tileLimits_, packs);
     const auto wideTile = [&](int pixel) { return static_cast<std::uint32_t>(pixel / (grid_.wide * ListGrid::tile)); };
     std::erase_if(part.wides, [&](const ListHead& head) {
       const Footprint& f = head.seen;
       return !wideLimits_.some(wideTile(f.x0), wideTile(f.y0), wideTile(f.x1), wideTile(f.y1), f.nearest);
     });
-    part.pack(part.wides, wide, wideLimits_, world, type, eyeForms, eye);
+    ListPacking packing(part, wide, wideLimits_, packs);
+    packing.add(part.wides);
+    packing.finish();
   });
   grazing_ = farSphere_ = boxOnFace_ = false;
   for (const auto& part : parts_) {

@@ -46,6 +46,7 @@ struct ListSpan {
 class ListBuilder {
  public:
   struct Part;  // a thread's share of the solids
+  struct Packs;
   ListBuilder();
   ~ListBuilder();
 
@@ -73,7 +74,6 @@ class ListBuilder {
              const std::array<bool, kindCount>& slots);
 
  private:
-  struct Packs;
   struct Rounds;
   /// A thread's part of finding what is not hidden, in rounds of all threads.
   void sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds, Footprints& footprints);

@@ -4,8 +4,8 @@
 #include <bit>
 #include <optional>
 
+#include "host/cast/list_packing.h"
 #include "host/cast/list_routes.h"
-#include "host/cast/record_batch.h"
 #include "host/cast/wide.h"
 
 namespace solidcast {
@@ -118,35 +118,25 @@ void ListBuilder::Part::start(const ListGrid& grid) {
 
 namespace {
 
-/// Into the caches, what comes a block later: solid by solid, while others are worked on; all at once they would wait for
-/// each other.
-void fetchNext(std::span<const SolidEntry> solids, std::size_t solid) {
-  const auto* next = reinterpret_cast<const char*>(solids.data() + solid + Footprints::block);
-  __builtin_prefetch(next), __builtin_prefetch(next + 64);
-}
-
-/// By blocks; find(shapes, the first's place).
-void forEachBlock(std::span<const SolidEntry> solids, std::size_t from, std::size_t to, auto&& find) {
-  std::array<const Shape*, Footprints::block> shapes;
-  for (std::size_t first = from; first < to; first += Footprints::block) {
-    const std::size_t count = std::min(Footprints::block, to - first);
-    for (std::size_t i = 0; i < count; ++i) shapes[i] = &solids[first + i].shape;
-    find(std::span<const Shape* const>(shapes).first(count), static_cast<std::uint32_t>(first));
-  }
+/// By blocks; find(block).
+void forEachBlock(const Solids& solids, std::size_t from, std::size_t to, auto&& find) {
+  for (std::size_t first = from; first < to; first += Footprints::block)
+    find(Stretch{solids, static_cast<std::uint32_t>(first),
+                 static_cast<std::uint32_t>(std::min(Footprints::block, to - first))});
 }
 
 }  // namespace
 
-void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::size_t from, std::size_t to,
+void ListBuilder::Part::lookForSieve(const Solids& solids, std::size_t from, std::size_t to,
                                      Footprints& footprints, const TileLimits* limits, SmallDisc* discs) {
   const int shift = std::countr_zero(static_cast<std::uint32_t>(grid_.wide * ListGrid::tile));
   const std::int32_t across = grid_.wideAcross();
   std::vector<SeenWithin>* const bins = seenIn.data();
   Routes r;
-  forEachBlock(solids, from, to, [&](std::span<const Shape* const> shapes, std::uint32_t first) {
+  forEachBlock(solids, from, to, [&](const Stretch& block) {
     const auto anywhere = [&](std::size_t i, const Footprint& f) {
       if (!f.seen()) return;
-      const std::uint32_t solid = first + static_cast<std::uint32_t>(i);
+      const std::uint32_t solid = block.first + static_cast<std::uint32_t>(i);
       if (levelOf(f, grid_) == wide) return wides.push_back({f, solid});
       for (std::int32_t y = f.y0 >> shift; y <= f.y1 >> shift; ++y)
         for (std::int32_t x = f.x0 >> shift; x <= f.x1 >> shift; ++x) {
@@ -156,134 +146,47 @@ void ListBuilder::Part::lookForSieve(std::span<const SolidEntry> solids, std::si
     const auto batch = [&](const auto& b) {
       route(b, shift, across, r);
       if constexpr (requires { b.disc; })
-        for (std::size_t i = 0; i < b.count; ++i) discs[first - from + b.at[i]].bits = b.disc[i];
+        for (std::size_t i = 0; i < b.count; ++i) discs[block.first - from + b.at[i]].bits = b.disc[i];
       for (std::size_t i = 0; i < b.count; ++i) {
-        fetchNext(solids, first + i);
+        Footprints::fetchNext(b, i);
         const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
         if (limits && b.plain[i] && x0 <= x1 && y0 <= y1 &&
             limits->behind(static_cast<std::uint32_t>(x0), static_cast<std::uint32_t>(y0),
                            static_cast<std::uint32_t>(x1), static_cast<std::uint32_t>(y1),
                            static_cast<DepthCode>(b.nearest[i])))
           continue;
-        if (r.patch[i] == Routes::none) anywhere(b.at[i], footprints.of(b, i, shapes));
+        if (r.patch[i] == Routes::none) anywhere(b.at[i], footprints.of(b, i, block));
         else
-          r.forEach(i, first + b.at[i], static_cast<std::size_t>(across),
+          r.forEach(i, block.first + b.at[i], static_cast<std::size_t>(across),
                     [&](std::size_t at, const SeenWithin& s) { bins[at].push_back(s); });
       }
     };
-    footprints.findBatches(shapes, true, batch, anywhere);
+    footprints.findBatches(block, true, batch, anywhere);
   });
   farSphere = footprints.farSphere();
 }
 
-/// Records of one level's solids, kind by kind in the order of the solids.
-class ListBuilder::Part::Packing {
- public:
-  Packing(Part& part, ListLevel level, const TileLimits& limits, const World& world, RealType type, bool eyeForms,
-          const EyeFrames& eye)
-      : part_(part), level_(level), limits_(limits), world_(world), type_(type), eyeForms_(eyeForms), eye_(eye) {}
-
-  void add(const ListHead& head) {
-    std::visit([&](const auto& solid) { put(solid, head); }, world_.solids[head.solid].shape);
-  }
-  void finish() { flush(spheres_), flush(triangles_), flush(quads_); }
-
- private:
-  struct Many {
-    RecordBatch records;
-    std::array<ListHead, RecordBatch::block> heads;
-  };
-
-  void put(const auto& solid, const ListHead& head) { alone(solid, head); }
-  void put(const Sphere& solid, const ListHead& head) { together(solid, head, spheres_); }
-  void put(const Triangle& solid, const ListHead& head) { together(solid, head, triangles_); }
-  void put(const Quad& solid, const ListHead& head) { together(solid, head, quads_); }
-
-  void together(const auto& solid, const ListHead& head, std::optional<Many>& many) {
-    if (!eyeForms_ || type_ != RealType::f32) return alone(solid, head);
-    if (!many) many.emplace(Many{RecordBatch(kindNumber(solid)), {}});
-    many->heads[many->records.size()] = head;
-    if (!many->records.add(solid, head.solid, eye_.plain)) return alone(solid, head);
-    if (many->records.full()) flush(many);
-  }
-
-  void flush(std::optional<Many>& many) {
-    if (!many) return;
-    const RecordBatch& records = many->records;
-    const std::uint32_t rows = rowsOf(static_cast<std::size_t>(records.kind()), true);
-    for (std::size_t i = 0, count = many->records.pack(eye_.plain); i < count; ++i) {
-      const ListHead& head = many->heads[i];
-      if (records.poor(i)) {
-        std::visit([&](const auto& solid) { alone(solid, head); }, world_.solids[head.solid].shape);
-        continue;
-      }
-      part_.grazing = part_.grazing || records.grazing(i);
-      records.copy(i, room(static_cast<std::size_t>(records.kind()), 16 * rows, head), 4 * rows);
-    }
-  }
-
-  void alone(const auto& solid, const ListHead& head) {
-    if (!eyeForms_) {
-      RowWriter rows(type_);
-      packWorld(solid, eye_.exact.origin, head.solid, rows);
-      const auto kind = static_cast<std::size_t>(kindNumber(solid));
-      std::ranges::copy(rows.bytes(), room(kind, rows.bytes().size(), head));
-      return;
-    }
-    packed(solid, eye_, head.solid, type_, [&](const auto& record) {
-      if (record.kind < 0) return;
-      part_.grazing = part_.grazing || record.grazing;
-      const std::size_t rowSize = rowBytes(type_);
-      std::byte* to =
-          room(static_cast<std::size_t>(record.kind), rowSize * static_cast<std::size_t>(record.rows), head);
-      for (int r = 0; r < record.rows; ++r, to += rowSize) writeRow(to, type_, record.row[r]);
-    });
-    if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)
-      part_.boxOnFace = part_.boxOnFace || eyeOnFacePlane(solid, eye_.extended);
-  }
-
-  std::byte* room(std::size_t kind, std::size_t bytes, const ListHead& head) {
-    return part_.add(kind, bytes, head, level_, limits_);
-  }
-
-  Part& part_;
-  const ListLevel level_;
-  const TileLimits& limits_;
-  const World& world_;
-  const RealType type_;
-  const bool eyeForms_;
-  const EyeFrames& eye_;
-  std::optional<Many> spheres_, triangles_, quads_;
-};
-
 void ListBuilder::Part::look(std::size_t from, std::size_t to, Footprints& footprints, const TileLimits& limits,
-                             const World& world, RealType type, bool eyeForms, const EyeFrames& eye) {
-  const std::span<const SolidEntry> solids = world.solids;
-  Packing packing(*this, narrow, limits, world, type, eyeForms, eye);
-  forEachBlock(solids, from, to, [&](std::span<const Shape* const> shapes, std::uint32_t first) {
-    footprints.find(shapes, [&](std::size_t i, const Footprint& f) {
-      fetchNext(solids, first + i);
+                             const Packs& packs) {
+  ListPacking packing(*this, narrow, limits, packs);
+  forEachBlock(packs.world.solids, from, to, [&](const Stretch& block) {
+    const auto anywhere = [&](std::size_t i, const Footprint& f) {
       if (!f.seen()) return;
-      const ListHead head{f, first + static_cast<std::uint32_t>(i)};
+      const ListHead head{f, block.first + static_cast<std::uint32_t>(i)};
       if (levelOf(f, grid_) == wide) wides.push_back(head);
       else packing.add(head);
-    });
+    };
+    const auto batch = [&](const auto& b) {
+      for (std::size_t i = 0; i < b.count; ++i) {
+        Footprints::fetchNext(b, i);
+        anywhere(b.at[i], footprints.of(b, i, block));
+      }
+    };
+    footprints.findBatches(block, false, batch, anywhere);
   });
   packing.finish();
   // Of the whole scene, seen or not: so that fast has the same bits in every plan.
   farSphere = footprints.farSphere();
-}
-
-void ListBuilder::Part::pack(std::span<const ListHead> heads, ListLevel level, const TileLimits& limits,
-                             const World& world, RealType type, bool eyeForms, const EyeFrames& eye) {
-  // They lie far apart in memory: they are fetched a few ahead.
-  constexpr std::size_t ahead = 8;
-  Packing packing(*this, level, limits, world, type, eyeForms, eye);
-  for (std::size_t i = 0; i < heads.size(); ++i) {
-    if (i + ahead < heads.size()) fetch(world.solids[heads[i + ahead].solid].shape);
-    packing.add(heads[i]);
-  }
-  packing.finish();
 }
 
 std::byte* ListBuilder::Part::add(std::size_t kind, std::size_t bytes, const ListHead& head, ListLevel level,

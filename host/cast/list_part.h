@@ -43,6 +43,14 @@ class Arena {
   std::size_t room_ = 16, used_ = 0;
 };
 
+/// What a picture's records are made for.
+struct ListBuilder::Packs {
+  const World& world;
+  RealType type;
+  bool eyeForms;
+  const EyeFrames& eye;
+};
+
 struct ListBuilder::Part {
   // Where hidden solids are looked for: of a round's solids what is seen, by the wide tile.
   std::vector<std::vector<SeenWithin>> seenIn;
@@ -56,22 +64,16 @@ struct ListBuilder::Part {
 
   void start(const ListGrid& grid);
   /// Records of those that are seen, and of the wide ones where.
-  void look(std::size_t from, std::size_t to, Footprints& footprints, const TileLimits& limits, const World& world,
-            RealType type, bool eyeForms, const EyeFrames& eye);
+  void look(std::size_t from, std::size_t to, Footprints& footprints, const TileLimits& limits, const Packs& packs);
   /// Where each is seen; to seenIn, but for the wide ones, and without those that `limits` hide. `discs`: of the spheres, from `from` on.
-  void lookForSieve(std::span<const SolidEntry> solids, std::size_t from, std::size_t to, Footprints& footprints,
+  void lookForSieve(const Solids& solids, std::size_t from, std::size_t to, Footprints& footprints,
                     const TileLimits* limits, SmallDisc* discs);
-  /// Records of solids, for those of the tiles that may see them by `limits`.
-  void pack(std::span<const ListHead> heads, ListLevel level, const TileLimits& limits, const World& world,
-            RealType type, bool eyeForms, const EyeFrames& eye);
+  /// Room for a solid's record of so many bytes, noted in those of its tiles that may see it by `limits`.
+  std::byte* add(std::size_t kind, std::size_t bytes, const ListHead& head, ListLevel level, const TileLimits& limits);
   /// Copies every record to its tiles; tiles[][] says where each tile's next one goes.
   void write(std::byte* rows, std::size_t rowSize, bool eyeForms);
 
  private:
-  class Packing;
-  /// Room for a record of so many bytes, noted in the tiles that may see the solid.
-  std::byte* add(std::size_t kind, std::size_t bytes, const ListHead& head, ListLevel level, const TileLimits& limits);
-
   ListGrid grid_;
 };
 

@@ -25,13 +25,13 @@ WIDE std::array<int, 2> nearestOf(std::span<const SeenWithin> solids) {
 
 }  // namespace
 
-ListSample::ListSample(std::span<const SolidEntry> solids, Footprints& footprints) {
+ListSample::ListSample(const Solids& solids, Footprints& footprints) {
   const std::size_t step = solids.size() / 256 + 1;
-  std::array<const Shape*, Footprints::block> shapes;
+  std::array<ShapeRef, Footprints::block> shapes;
   for (std::size_t i = 0, count = 0; i < solids.size(); i += step) {
-    shapes[count++] = &solids[i].shape;
+    shapes[count++] = solids.shape(i);
     if (count < shapes.size() && i + step < solids.size()) continue;
-    footprints.find(std::span(shapes).first(count), [&](std::size_t at, const Footprint& f) {
+    footprints.find(std::span<const ShapeRef>(shapes).first(count), [&](std::size_t at, const Footprint& f) {
       if (f.seen()) all.push_back({f, shapes[at]});
     });
     count = 0;
@@ -51,8 +51,8 @@ double partLeft(const ListSample& sample, const Crop& region, RealType type) {
   for (const auto& [f, shape] : sample.all) {
     constexpr double side = Footprints::tile;
     const double width = f.x1 - f.x0 + 1, height = f.y1 - f.y0 + 1;
-    const bool sphere = std::holds_alternative<Sphere>(*shape);
-    const bool polygon = std::holds_alternative<Triangle>(*shape) || std::holds_alternative<Quad>(*shape);
+    const bool sphere = shape.getIf<Sphere>() != nullptr;
+    const bool polygon = shape.getIf<Triangle>() != nullptr || shape.getIf<Quad>() != nullptr;
     if (f.hides != DepthScale::none) layers += width * height * (sphere ? ofSphere : ofPolygon);
     looking += sphere ? lookingAtSphere : polygon ? lookingAtPolygon : lookingAtOther;
     listing += ((width - 1) / side + 1) * ((height - 1) / side + 1) * ofTile;
@@ -93,7 +93,7 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
   kept_.assign(all_.size() / 64 + 1, 0);
   constexpr std::size_t together = Footprints::block;
   std::array<std::uint32_t, 4 * together> places, round;
-  std::array<const Shape*, together> shapes;
+  std::array<ShapeRef, together> shapes;
   std::array<std::uint32_t, together> covering;
   for (std::size_t looked = 0; looked < order_.size();) {
     if (bucketOf(all_[order_[looked]].nearest()) > depths.deepest()) break;  // and so are all others
@@ -114,7 +114,7 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
         __builtin_prefetch(discs.of + (s.solid - discs.first));
       } else if (s.covers()) {
         covering[count] = at;
-        fetch(*(shapes[count++] = &solids_[s.solid].shape));
+        fetch(shapes[count++] = solids_.shape(s.solid));
         if (count == shapes.size()) addShapes();
       }
     }

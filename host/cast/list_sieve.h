@@ -13,9 +13,12 @@
 namespace solidcast {
 
 /// Into the caches, for soon.
-inline void fetch(const Shape& shape) {
-  const auto* at = reinterpret_cast<const char*>(&shape);
-  for (std::size_t line = 0; line < sizeof shape; line += 64) __builtin_prefetch(at + line);
+inline void fetch(ShapeRef shape) {
+  shape.visit([](const auto& solid) {
+    const auto* at = reinterpret_cast<const char*>(&solid);
+    for (std::size_t line = 0; line < sizeof solid; line += 64) __builtin_prefetch(at + line);
+    __builtin_prefetch(at + sizeof solid - 1);
+  });
 }
 
 /// A solid where it is seen in the region.
@@ -26,11 +29,11 @@ struct ListHead {
 
 /// A few hundred solids from all over a scene, those of them that are seen.
 struct ListSample {
-  ListSample(std::span<const SolidEntry> solids, Footprints& footprints);
+  ListSample(const Solids& solids, Footprints& footprints);
 
   struct One {
     Footprint seen;
-    const Shape* shape;
+    ShapeRef shape;
   };
   std::vector<One> all;
   double each = 1;  // so many solids are there for one of these
@@ -47,7 +50,7 @@ struct ListPatch {
 
 class Sieve {
  public:
-  Sieve(std::span<const SolidEntry> solids, Footprints& footprints) : solids_(solids), footprints_(footprints) {}
+  Sieve(const Solids& solids, Footprints& footprints) : solids_(solids), footprints_(footprints) {}
 
   /// Adds to the patch, which has been started, what is not hidden of `narrow`, lists each in the order of the solids,
   /// in which it is added. `wides` hide as well, where they are seen.
@@ -65,7 +68,7 @@ class Sieve {
     return static_cast<DepthCode>(least_ + ((nearest - least_) >> shift_ << shift_));
   }
 
-  std::span<const SolidEntry> solids_;
+  const Solids& solids_;
   Footprints& footprints_;
   std::vector<SeenWithin> wides_;
   std::vector<SeenWithin> all_;       // list by list, the wide ones last

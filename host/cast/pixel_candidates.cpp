@@ -22,18 +22,17 @@ PixelCandidates::PixelCandidates(const Scene& scene, const Silhouette& silhouett
         i);
 
   // Each share of the solids notes what it finds by itself, in order; the shares are then put together in theirs.
-  const std::span<const SolidEntry> solids(scene.world.solids);
+  const Solids& solids = scene.world.solids;
   constexpr std::size_t share = 64 * Footprints::block;
   std::vector<std::vector<std::array<std::uint32_t, 2>>> found((solids.size() + share - 1) / share);  // pixel, solid
   const Frame<double> eye(eyeFrame(scene, RealType::f64));
   const auto look = [&](std::size_t part) {
     const std::size_t from = part * share, to = std::min(from + share, solids.size());
     Footprints footprints(silhouette, region, eye, RealType::f64);
-    std::array<const Shape*, Footprints::block> shapes;
     for (std::size_t first = from; first < to; first += Footprints::block) {
-      const std::size_t count = std::min(Footprints::block, to - first);
-      for (std::size_t k = 0; k < count; ++k) shapes[k] = &solids[first + k].shape;
-      footprints.find(std::span(shapes).first(count), [&](std::size_t k, const Footprint& f) {
+      const Stretch block{solids, static_cast<std::uint32_t>(first),
+                          static_cast<std::uint32_t>(std::min(Footprints::block, to - first))};
+      footprints.find(block, [&](std::size_t k, const Footprint& f) {
         if (!f.seen()) return;
         for (std::int32_t y = f.y0 / side; y <= f.y1 / side; ++y)
           for (std::int32_t x = f.x0 / side; x <= f.x1 / side; ++x)

@@ -149,7 +149,7 @@ PlanFacts planFacts(const gpu::DeviceInfo& device, const World& world, const Pro
                     const CastOptions& options) {
   PlanFacts facts;
   facts.program = program;
-  for (const SolidEntry& solid : world.solids) ++facts.count[static_cast<std::size_t>(kindNumber(solid.shape))];
+  facts.count = solidsOfKinds(world);
   facts.pixels = pixels;
   facts.pictures = options.pictures;
   facts.moving = options.moving;

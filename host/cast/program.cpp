@@ -116,8 +116,7 @@ gpu::CompiledModule stageModule(const std::string& name, int camera, const CastO
 
 std::vector<std::string> leftOutLines(const Program& program, const World& world, const Channels& channels) {
   std::vector<std::string> lines;
-  std::array<bool, kindCount> there{};
-  for (const SolidEntry& solid : world.solids) there[static_cast<std::size_t>(kindNumber(solid.shape))] = true;
+  const auto there = solidsOfKinds(world);
   for (int kind = 0; kind < kindCount; ++kind)
     if (!there[static_cast<std::size_t>(kind)])
       lines.push_back(std::string(kindLabel(kind)) + ": no code, no records (the scene has none)");

@@ -75,8 +75,16 @@ std::pair<f128, f128> pixelSteps(const Camera& camera, std::int64_t columns, std
 }
 
 const char* kindLabel(int kind) { return kindTable[kind].label; }
-int kindNumber(const Shape& shape) {
-  return std::visit([](const auto& s) { return numberOf<std::decay_t<decltype(s)>>(); }, shape);
+int kindNumber(ShapeRef shape) {
+  return shape.visit([]<class Solid>(const Solid&) { return numberOf<Solid>(); });
+}
+std::array<std::uint32_t, kindCount> solidsOfKinds(const World& world) {
+  std::array<std::uint32_t, kindCount> counts;
+#define SOLID(NUMBER, KIND, kind, Type, EYE_ROWS, WORLD_ROWS) \
+  counts[NUMBER] = static_cast<std::uint32_t>(world.solids.of<Type>().size());
+#include "shaders/solids.def"
+#undef SOLID
+  return counts;
 }
 
 std::uint32_t Records::solids() const {
@@ -91,17 +99,17 @@ Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
   Records flags;
   std::vector<std::array<std::uint32_t, 2>> places;
   for (std::size_t i = 0; i < world.solids.size(); ++i) {
-    const Shape& shape = world.solids[i].shape;
+    const ShapeRef shape = world.solids.shape(i);
     const auto keep = [&](const auto& record) {
       auto kind = static_cast<std::uint32_t>(record.kind < 0 ? kindCount : record.kind);
       places.push_back({kind, kind < kindCount ? static_cast<std::uint32_t>(rows[kind].rows()) : 0});
       for (int r = 0; r < record.rows; ++r) rows[kind].add(record.row[r]);
       flags.grazing = flags.grazing || (record.kind >= 0 && record.grazing);
     };
-    std::visit([&](const auto& s) { packed(s, frames, i, type, keep); }, shape);
-    if (const auto* sphere = std::get_if<Sphere>(&shape))
+    shape.visit([&](const auto& s) { packed(s, frames, i, type, keep); });
+    if (const auto* sphere = shape.getIf<Sphere>())
       flags.farSphere = flags.farSphere || isFar(*sphere, frames.plain);
-    if (const auto* box = std::get_if<AABox>(&shape))
+    if (const auto* box = shape.getIf<AABox>())
       flags.boxOnFace = flags.boxOnFace || eyeOnFacePlane(*box, frames.extended);
   }
   Records records = joined(rows, true);
@@ -119,9 +127,10 @@ Records worldRecords(const World& world, V3 origin, RealType type) {
   std::vector<RowWriter> rows = writers(type);
   std::vector<std::array<std::uint32_t, 2>> places;
   for (std::size_t i = 0; i < world.solids.size(); ++i) {
-    auto kind = static_cast<std::size_t>(kindNumber(world.solids[i].shape));
+    const ShapeRef shape = world.solids.shape(i);
+    auto kind = static_cast<std::size_t>(kindNumber(shape));
     places.push_back({static_cast<std::uint32_t>(kind), static_cast<std::uint32_t>(rows[kind].rows())});
-    std::visit([&](const auto& s) { packWorld(s, origin, static_cast<double>(i), rows[kind]); }, world.solids[i].shape);
+    shape.visit([&](const auto& s) { packWorld(s, origin, static_cast<double>(i), rows[kind]); });
   }
   Records records = joined(rows, false);
   for (auto& place : places) place[1] += records.firstRow[place[0]];
@@ -146,8 +155,8 @@ EyeFrame eyeFrame(const Scene& scene, RealType type) {
   const Triple origin{double(eye.origin.x), double(eye.origin.y), double(eye.origin.z)};
   const std::size_t solids = scene.world.solids.size(), step = solids / 512 + 1;
   for (std::size_t i = 0; i < solids; i += step) {
-    const Shape& shape = scene.world.solids[i].shape;
-    const double scale = std::visit([&](const auto& s) { return distance(ball(s).center, origin); }, shape);
+    const double scale =
+        scene.world.solids.shape(i).visit([&](const auto& s) { return distance(ball(s).center, origin); });
     if (scale > 0) scales.push_back(scale);
   }
   if (scales.empty()) return eye;

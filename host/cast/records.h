@@ -15,7 +15,9 @@ inline constexpr int kindCount = 7;
 
 /// Names by number of shaders/solids.def.
 const char* kindLabel(int kind);
-int kindNumber(const Shape& shape);
+int kindNumber(ShapeRef shape);
+/// How many there are, by kind.
+std::array<std::uint32_t, kindCount> solidsOfKinds(const World& world);
 
 /// Rows of all kinds, one kind after the other.
 struct Records {

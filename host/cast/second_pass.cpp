@@ -15,9 +15,9 @@ namespace {
 
 constexpr int fewCasts = 8;  // rays that look at every solid's box take as long as building the index
 
-Cut cutOf(const Shape& shape, const RayQ& ray) {
-  Cut c = std::visit([&](const auto& s) { return cut(s, ray); }, shape);
-  return c.close && ray.rational ? rationalCut(shape, ray) : c;
+Cut cutOf(ShapeRef shape, const RayQ& ray) {
+  Cut c = shape.visit([&](const auto& s) { return cut(s, ray); });
+  return c.close && ray.rational ? rationalCut(shape.copy(), ray) : c;
 }
 
 }  // namespace
@@ -35,14 +35,14 @@ std::vector<SecondPass::Candidate> SecondPass::candidates(const RayQ& ray, f128 
   std::vector<Candidate> all;
   const IndexWalk walk(o, d);
   const auto consider = [&](std::uint32_t solid) {
-    const Cut c = cutOf(world_.solids[solid].shape, ray);
+    const Cut c = cutOf(world_.solids.shape(solid), ray);
     if (!c.hit) return;
     all.push_back({solid, c});
     nearest = std::min(nearest, static_cast<double>(c.t * perT));
   };
   if (index_ == nullptr && cast_++ < fewCasts) {
     for (std::uint32_t solid = 0; solid < world_.solids.size(); ++solid) {
-      const auto box = boundsOf(world_.solids[solid].shape);
+      const auto box = boundsOf(world_.solids.shape(solid));
       if (!box || walk.meets(box->lo, box->hi, nearest)) consider(solid);
     }
     return all;  // by index already
@@ -60,21 +60,21 @@ ExactHit SecondPass::cast(const RayQ& ray, std::optional<f128> tMax) const {
 ExactHit SecondPass::castAmong(const RayQ& ray, std::span<const std::uint32_t> solids) const {
   std::vector<Candidate> all;
   for (const std::uint32_t solid : solids)
-    if (const Cut c = cutOf(world_.solids[solid].shape, ray); c.hit) all.push_back({solid, c});
+    if (const Cut c = cutOf(world_.solids.shape(solid), ray); c.hit) all.push_back({solid, c});
   return nearest(ray, all, std::nullopt);
 }
 
 ExactHit SecondPass::nearest(const RayQ& ray, std::span<const Candidate> candidates, std::optional<f128> tMax) const {
   ExactHit best;
   for (const auto& [solid, c] : candidates) {
-    const Shape& shape = world_.solids[solid].shape;
+    const Shape shape = world_.solids[solid].shape;
     // Near the limit or the best so far, a free ray has rationals to tell; else they count as equal.
     if (tMax) {
       bool open = ray.rational && fabsq(c.t - *tMax) <= slack() * *tMax;
       if (open ? rationalOrder(shape, static_cast<double>(*tMax), ray) >= 0 : c.t >= *tMax) continue;
     }
     if (best && fabsq(c.t - best.t) <= slack() * best.t) {
-      const Shape& other = world_.solids[static_cast<std::size_t>(best.index)].shape;
+      const Shape other = world_.solids[static_cast<std::size_t>(best.index)].shape;
       if (!ray.rational || rationalOrder(shape, other, ray) >= 0) continue;
     } else if (best && c.t > best.t) {
       continue;
@@ -85,13 +85,13 @@ ExactHit SecondPass::nearest(const RayQ& ray, std::span<const Candidate> candida
 }
 
 ExactHit SecondPass::castAt(const RayQ& ray, std::int32_t index) const {
-  Cut c = cutOf(world_.solids[static_cast<std::size_t>(index)].shape, ray);
+  Cut c = cutOf(world_.solids.shape(static_cast<std::size_t>(index)), ray);
   return c.hit ? ExactHit{index, c.t} : ExactHit{};
 }
 
 Surface SecondPass::surface(const RayQ& ray, const ExactHit& hit) const {
-  return std::visit([&](const auto& s) { return solidcast::surface(s, ray, hit.t); },
-                    world_.solids[static_cast<std::size_t>(hit.index)].shape);
+  return world_.solids.shape(static_cast<std::size_t>(hit.index))
+      .visit([&](const auto& s) { return solidcast::surface(s, ray, hit.t); });
 }
 
 void inParallel(std::size_t n, const std::function<void(std::size_t)>& f, std::size_t share) {

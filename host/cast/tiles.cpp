@@ -47,7 +47,7 @@ TileLists tileLists(const Scene& scene, int width, int height, int samples, cons
   const auto& solids = scene.world.solids;
   std::vector<Tiles> tiles(solids.size());
   inParallel(solids.size(), [&](std::size_t i) {
-    Rectangle r = std::visit([&](const auto& s) { return silhouette.rectangle(s); }, solids[i].shape);
+    Rectangle r = solids.shape(i).visit([&](const auto& s) { return silhouette.rectangle(s); });
     tiles[i] = touched(r, grid);
   });
 

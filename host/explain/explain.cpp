@@ -232,7 +232,7 @@ Explanation explainPixel(gpu::Device& device, const Scene& scene, const RenderJo
 
   std::vector<Candidate> all;
   for (std::size_t i = 0; i < scene.world.solids.size(); ++i) {
-    const Shape& shape = scene.world.solids[i].shape;
+    const Shape shape = scene.world.solids[i].shape;
     const auto index = static_cast<std::int32_t>(i);
     const bool chosen = index == e.gpu.index || index == e.cpu.index || index == truth.index;
     if (!chosen && scene.world.solids.size() > kTryAll && farOff(shape, ray)) continue;
@@ -251,7 +251,7 @@ Explanation explainPixel(gpu::Device& device, const Scene& scene, const RenderJo
     c.matters = c.index == e.truth.index || c.index == e.gpu.index || (c.wrong() && (!e.gpu.right || e.secondPass));
     if (!c.matters) continue;
     c.lost = lostLine(c, digits);
-    const Shape& shape = scene.world.solids[static_cast<std::size_t>(c.index)].shape;
+    const Shape shape = scene.world.solids[static_cast<std::size_t>(c.index)].shape;
     const Cut cut = std::visit([&](const auto& s) { return solidcast::cut(s, ideal); }, shape);
     e.onEdge = e.onEdge || cut.close || c.truth.marginUlps * 0x1p-24 < 0x1p-100;
   }

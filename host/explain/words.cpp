@@ -17,9 +17,9 @@ std::string printed(const char* format, f128 x) {
 
 std::string solidName(const World& world, std::int32_t index) {
   if (index < 0) return "nothing";
-  const SolidEntry& solid = world.solids[static_cast<std::size_t>(index)];
+  const SolidEntry solid = world.solids[static_cast<std::size_t>(index)];
   return solid.name.empty() ? std::string(kindLabel(kindNumber(solid.shape))) + " " + std::to_string(index)
-                            : solid.name.text();
+                            : solid.name;
 }
 
 std::string decimal(f128 x) { return printed("%.18Qg", x); }

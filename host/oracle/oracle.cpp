@@ -185,7 +185,7 @@ WorldTruth cast(const World& world, const Ray128& ray, Effort effort) {
   WorldTruth result;
   const auto consider = [&result](double margin) { result.marginUlps = std::fmin(result.marginUlps, margin); };
   for (std::size_t i = 0; i < world.solids.size(); ++i) {
-    const Shape& shape = world.solids[i].shape;
+    const Shape shape = world.solids[i].shape;
     const Truth truth = intersect(shape, ray, effort);
     if (!truth.hit) {
       consider(truth.marginUlps);

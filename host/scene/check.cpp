@@ -33,7 +33,7 @@ void checkTree(const World& world) {
       if (path.size() > kMaxGroupDepth)
         refuse("groups are nested too deep, expected at most " + std::to_string(kMaxGroupDepth));
       path.push_back({member.index, 0});
-    } else if (member.index != solids++ || world.solids[member.index].group != group) {
+    } else if (member.index != solids++ || world.solids.group(member.index) != group) {
       refuse(what + " is out of order or in the wrong group, expected solids depth first");
     }
   }
@@ -65,12 +65,12 @@ void checkScene(const Scene& scene, std::vector<std::string>& warnings) {
     checkTree(scene.world);
     UniqueNames names;
     for (std::uint32_t i = 0; i < scene.world.solids.size(); ++i) {
-      const SolidEntry& solid = scene.world.solids[i];
+      const SolidEntry solid = scene.world.solids[i];
       place = solidName(scene.world, i);
       found.clear();
       checkShape(solid.shape, found);
       report(found);
-      names.add(solid.name.text(), kindName(solid.shape) + numbered(" ", i), "");
+      names.add(solid.name, kindName(solid.shape) + numbered(" ", i), "");
     }
     for (const CustomSolid& custom : scene.world.customSolids) names.add(custom.name, "custom", "");
     for (std::size_t i = 0; i < scene.world.groups.size(); ++i) {
@@ -92,8 +92,8 @@ std::string solidName(const World& world, std::uint32_t index) {
     const CustomSolid& custom = world.customSolids[index - world.solids.size()];
     return custom.name.empty() ? numbered("custom ", index) : custom.name;
   }
-  const SolidEntry& solid = world.solids[index];
-  return solid.name.empty() ? kindName(solid.shape) + numbered(" ", index) : solid.name.text();
+  const SolidEntry solid = world.solids[index];
+  return solid.name.empty() ? kindName(solid.shape) + numbered(" ", index) : solid.name;
 }
 
 }  // namespace solidcast

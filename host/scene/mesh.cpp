@@ -134,7 +134,7 @@ void addMesh(World& world, std::uint32_t parent, const std::string& name, const 
   world.groups[parent].members.push_back({true, group});
   std::vector<GroupMember>& members = world.groups[group].members;
   members.reserve(mesh.triangles.size());
-  world.solids.reserve(world.solids.size() + mesh.triangles.size());
+  world.solids.reserve<Triangle>(mesh.triangles.size());
   std::size_t flat = 0;
   std::vector<Fault> slivers;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -158,9 +158,9 @@ Scene sceneOfMesh(const std::string& file, std::vector<Fault>& warnings) {
   Scene scene;
   scene.file = file;
   addMesh(scene.world, 0, "", file, {}, warnings);
-  Triple low = std::get<Triangle>(scene.world.solids[0].shape).v1, high = low;
-  for (const SolidEntry& solid : scene.world.solids) {
-    const auto& triangle = std::get<Triangle>(solid.shape);
+  const std::vector<Triangle>& triangles = scene.world.solids.of<Triangle>();
+  Triple low = triangles[0].v1, high = low;
+  for (const Triangle& triangle : triangles) {
     for (const Triple& vertex : {triangle.v1, triangle.v2, triangle.v3})
       for (int i = 0; i < 3; ++i) {
         low[i] = std::min(low[i], vertex[i]);

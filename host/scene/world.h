@@ -4,56 +4,16 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
+#include "host/scene/solids.h"
+
 namespace solidcast {
 
-using Triple = std::array<double, 3>;  // a point, vector or colour; x, y, z or r, g, b
-
-// --- solids (names and arguments of the course sheet) ---------------------------------------------
-
-/// Normal of any length.
-struct InfinitePlane {
-  Triple origin, normal;
-  bool operator==(const InfinitePlane&) const = default;
-};
-/// Opposite corners in any order.
-struct AABox {
-  Triple corner1, corner2;
-  bool operator==(const AABox&) const = default;
-};
-struct Sphere {
-  Triple center;
-  double radius;
-  bool operator==(const Sphere&) const = default;
-};
-/// Normal of any length.
-struct Disc {
-  Triple center, normal;
-  double radius;
-  bool operator==(const Disc&) const = default;
-};
-/// Normal (v2-v1) x (v3-v1).
-struct Triangle {
-  Triple v1, v2, v3;
-  bool operator==(const Triangle&) const = default;
-};
-/// Parallelogram vertex + u span1 + v span2, u and v in [0,1]; normal span1 x span2.
-struct Quad {
-  Triple vertex, span1, span2;
-  bool operator==(const Quad&) const = default;
-};
-/// a..j of ax^2+by^2+cz^2+dxy+exz+fyz+gx+hy+iz+j = 0; normal along the gradient.
-struct Quadric {
-  std::array<double, 10> coefficients;
-  bool operator==(const Quadric&) const = default;
-};
-
+// --- users' own GLSL ------------------------------------------------------------------------------
 /// A number or three numbers that a scene gives to users' own GLSL.
 struct GlslParameter {
   std::string name;  // as GLSL takes it
@@ -74,38 +34,7 @@ struct CustomSolid {
   bool operator==(const CustomSolid&) const = default;
 };
 
-using Shape = std::variant<InfinitePlane, AABox, Sphere, Disc, Triangle, Quad, Quadric>;
-
-/// A text that is mostly empty, and then takes no more than a pointer: a picture reads every solid, and bytes take time.
-class RareName {
- public:
-  RareName() = default;
-  RareName(std::string text) : text_(text.empty() ? nullptr : new std::string(std::move(text))) {}
-  RareName(const char* text) : RareName(std::string(text)) {}
-  RareName(const RareName& other) : text_(other.text_ ? new std::string(*other.text_) : nullptr) {}
-  RareName(RareName&&) noexcept = default;
-  RareName& operator=(RareName other) noexcept {
-    text_ = std::move(other.text_);
-    return *this;
-  }
-  bool empty() const { return !text_; }
-  const std::string& text() const {
-    static const std::string none;
-    return text_ ? *text_ : none;
-  }
-  bool operator==(const RareName& other) const { return text() == other.text(); }
-
- private:
-  std::unique_ptr<const std::string> text_;
-};
-
-struct SolidEntry {
-  RareName name;  // unique in the scene; may be empty
-  Shape shape;
-  std::uint32_t group = 0;  // index into World::groups
-  bool operator==(const SolidEntry&) const = default;
-};
-
+// --- groups ---------------------------------------------------------------------------------------
 struct GroupMember {
   bool isGroup = false;
   std::uint32_t index = 0;  // into World::groups or World::solids
@@ -122,7 +51,7 @@ struct GroupEntry {
 /// A tree of groups, stored flat so that depth costs no recursion.
 /// `solids` are in depth-first order: a solid's place there is its `index` everywhere (query, AOV, ties).
 struct World {
-  std::vector<SolidEntry> solids;
+  Solids solids;
   std::vector<GroupEntry> groups{GroupEntry{}};  // groups[0] is the root
   std::vector<CustomSolid> customSolids;         // in no group; their indices go on after those of `solids`
   bool operator==(const World&) const = default;

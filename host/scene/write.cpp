@@ -90,7 +90,7 @@ std::string integrators(const Scene& scene) {
 std::string nameMember(const std::string& name) { return name.empty() ? "" : member("name", text(name)); }
 
 std::string solidLine(const SolidEntry& solid) {
-  return std::string("{\"type\": \"") + kindName(solid.shape) + "\"" + nameMember(solid.name.text()) +
+  return std::string("{\"type\": \"") + kindName(solid.shape) + "\"" + nameMember(solid.name) +
          std::visit([](const auto& shape) { return fields(shape); }, solid.shape) + "}";
 }
 

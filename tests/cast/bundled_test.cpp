@@ -78,9 +78,11 @@ TEST_F(OnDevice, FastKeepsFourUlpsOnFlatSolids) {
                            "solids/box.json"}) {
     Scene scene = loaded(name);
     scene.width = 128, scene.height = 96;
-    std::erase_if(scene.world.solids, [](const SolidEntry& solid) {
+    std::vector<SolidEntry> flat(scene.world.solids.begin(), scene.world.solids.end());
+    std::erase_if(flat, [](const SolidEntry& solid) {
       return std::holds_alternative<Sphere>(solid.shape) || std::holds_alternative<Quadric>(solid.shape);
     });
+    scene.world.solids = Solids(flat);
     Census c = census(device(), scene, Method::fast);
     EXPECT_EQ(c.stuck, 0) << name;
     EXPECT_LE(c.atPercent(99), 4) << name;

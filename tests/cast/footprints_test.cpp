@@ -58,7 +58,7 @@ struct Measured {
   }
 
   Footprint seen(const Shape& shape) {
-    const Shape* one = &shape;
+    const ShapeRef one = shape;
     Footprint found;
     footprints.find(std::span(&one, 1), [&](std::size_t, const Footprint& f) { found = f; });
     return found;
@@ -99,7 +99,7 @@ void depthsAreLoweredOnlyWhereHit(bool asDiscs) {
   Measured m;
   int hits = 0, lowered = 0;
   for (const Shape& shape : solids(asDiscs ? 600 : 80)) {
-    const Shape* one = &shape;
+    const ShapeRef one = shape;
     const Footprint f = m.seen(shape);
     // The whole picture, then one of its parts.
     for (const Crop& area : {Crop{0, 0, width, (height + 3) / 4 * 4}, Crop{24, 16, 32, 24}}) {
@@ -180,8 +180,8 @@ TEST(Routes, GoWhereTheSolidIsSeen) {
   Routes routes;
   int whole = 0, split = 0, elsewhere = 0, discs = 0, missed = 0;
   for (std::size_t first = 0; first + Footprints::block <= all.size(); first += Footprints::block) {
-    std::vector<const Shape*> shapes;
-    for (std::size_t i = 0; i < Footprints::block; ++i) shapes.push_back(&all[first + i]);
+    std::vector<ShapeRef> shapes;
+    for (std::size_t i = 0; i < Footprints::block; ++i) shapes.push_back(all[first + i]);
     const auto batch = [&](const auto& b) {
       route(b, shift, across, routes);
       for (std::size_t i = 0; i < b.count; ++i) {

@@ -167,7 +167,7 @@ TEST_F(Lists, ACasterGoesFromSceneToScene) {
   scenes.push_back(scenes[2]);
   scenes.push_back(fromWithin(scenes[0]));
   Scene empty = scenes[0];
-  empty.world.solids.clear();
+  empty.world.solids = {};
   empty.world.groups = {GroupEntry{}};
   scenes.push_back(empty);
   scenes.push_back(scenes[1]);

@@ -174,7 +174,8 @@ TEST_F(OnDevice, TheOrderOfSolidsDoesNotMatter) {
   for (std::size_t i = order.size(); i > 1; --i)
     std::swap(order[i - 1], order[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
   World shuffled = world;
-  for (std::size_t i = 0; i < order.size(); ++i) shuffled.solids[i] = world.solids[order[i]];
+  shuffled.solids = {};
+  for (const std::size_t i : order) shuffled.solids.push_back(world.solids[i]);
   for (const Method method : kMethods) {
     const auto a = castAll(device(), world, rays, {.method = method});
     const auto b = castAll(device(), shuffled, rays, {.method = method});

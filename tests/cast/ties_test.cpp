@@ -11,11 +11,11 @@ class Ties : public OnDevice {
  protected:
   Scene scene() {
     Scene s = loaded("a_solids.json");
-    s.world.solids.clear();
+    s.world.solids = {};
     return s;
   }
   static void fill(Scene& s, const std::vector<Shape>& shapes) {
-    s.world.solids.clear();
+    s.world.solids = {};
     for (const Shape& shape : shapes) s.world.solids.push_back({"", shape});
   }
   static bool mayTieFrom(const Scene& s) { return eyeRecords(s.world, eyeFrame(s, RealType::f32), RealType::f32).ties; }

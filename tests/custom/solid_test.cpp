@@ -219,7 +219,7 @@ bool intersect(Ray ray, float tMin, float tMax, Parameters p, out float t, out v
   const auto seen = [&](const std::string& sign, const std::string& bounds) {
     Scene own =
         scene("", R"({"type": "custom", "glsl": "plane.glsl", "parameters": {"sign": )" + sign + "}" + bounds + "}");
-    own.world.solids.clear();
+    own.world.solids = {};
     own.world.groups[0].members.clear();
     const Band band = render(own, {.solid = true, .position = true});
     std::size_t count = 0;

@@ -58,7 +58,7 @@ TEST_F(Explain, EveryCameraAndMethodOnEveryKind) {
   Scene scene = loaded("a_solids.json");
   for (const SolidEntry& solid : loaded("quadrics.json").world.solids) {
     scene.world.groups[0].members.push_back({false, static_cast<std::uint32_t>(scene.world.solids.size())});
-    scene.world.solids.push_back({solid.name.text() + "'", solid.shape, 0});
+    scene.world.solids.push_back({solid.name + "'", solid.shape, 0});
   }
   scene.width = 48, scene.height = 36;
   std::array<int, kindCount> kinds{};

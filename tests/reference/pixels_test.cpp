@@ -105,7 +105,9 @@ TEST(QuadricScene, SphereAsAQuadricAndTheOthersAgreeWithTheirEquations) {
   // Solid 2 is the sphere around (-2, 2, 2) of radius 2: the same picture comes from a Sphere.
   const Scene scene = quadricScene();
   Scene withSphere = scene;
-  withSphere.world.solids[2].shape = solidcast::Sphere{{-2, 2, 2}, 2};
+  std::vector<solidcast::SolidEntry> solids(scene.world.solids.begin(), scene.world.solids.end());
+  solids[2].shape = solidcast::Sphere{{-2, 2, 2}, 2};
+  withSphere.world.solids = solidcast::Solids(solids);
   const RenderJob job = jobOf(scene, {.rgb8 = true, .distance = true, .solid = true, .position = true});
   const Band quadrics = renderWhole(scene, job, Precision::f64);
   const Band mixed = renderWhole(withSphere, job, Precision::f64);
@@ -117,7 +119,7 @@ TEST(QuadricScene, SphereAsAQuadricAndTheOthersAgreeWithTheirEquations) {
   EXPECT_LE(differing, 30);
   for (std::size_t pixel = 0; pixel < quadrics.solid.size(); ++pixel) {
     if (quadrics.solid[pixel] < 0) continue;
-    const auto& q = std::get<solidcast::Quadric>(scene.world.solids[quadrics.solid[pixel]].shape).coefficients;
+    const auto q = std::get<solidcast::Quadric>(scene.world.solids[quadrics.solid[pixel]].shape).coefficients;
     const double x = quadrics.position[3 * pixel], y = quadrics.position[3 * pixel + 1],
                  z = quadrics.position[3 * pixel + 2];
     const double value = q[0] * x * x + q[1] * y * y + q[2] * z * z + q[6] * x + q[7] * y + q[8] * z + q[9];

@@ -66,7 +66,9 @@ TEST(CheckScene, View) {
 
 TEST(CheckScene, Names) {
   Scene scene = aSolids();
-  scene.world.solids[8].name = "sphere 1";
+  std::vector<SolidEntry> solids(scene.world.solids.begin(), scene.world.solids.end());
+  solids[8].name = "sphere 1";
+  scene.world.solids = Solids(solids);
   EXPECT_EQ(checked(scene),
             "a_solids: sphere 1: duplicate name \"sphere 1\", expected a name of its own (it is that of sphere 0)");
 }

@@ -19,7 +19,9 @@ TEST(Load, ASolidsIsTheSameFromFileAndFromApi) {
   EXPECT_EQ(fromApi.world.solids.size(), 9u);
   checkScene(fromApi, warnings);
   EXPECT_TRUE(warnings.empty());
-  fromApi.world.solids[8].name = "another";
+  std::vector<SolidEntry> solids(fromApi.world.solids.begin(), fromApi.world.solids.end());
+  solids[8].name = "another";
+  fromApi.world.solids = Solids(solids);
   EXPECT_NE(fromFile, fromApi);
 }
 
@@ -90,14 +92,14 @@ TEST(Load, GroupsKeepDepthFirstOrder) {
   const World& world = scene.world;
   ASSERT_EQ(world.solids.size(), 5u);
   std::string order;
-  for (const SolidEntry& solid : world.solids) order += solid.name.text();
+  for (const SolidEntry& solid : world.solids) order += solid.name;
   EXPECT_EQ(order, "abcde");
   const std::vector<GroupEntry> groups = {{"", 0, {{false, 0}, {true, 1}, {false, 4}, {true, 3}}},
                                           {"outer", 0, {{false, 1}, {true, 2}, {false, 3}}},
                                           {"", 1, {{false, 2}}},
                                           {"", 0, {}}};
   EXPECT_EQ(world.groups, groups);
-  EXPECT_EQ(world.solids[2].group, 2u);
+  EXPECT_EQ(world.solids.group(2), 2u);
   std::vector<std::string> warnings;
   EXPECT_NO_THROW(checkScene(scene, warnings));
 }

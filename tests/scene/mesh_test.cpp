@@ -50,11 +50,7 @@ class MeshFiles : public ::testing::Test {
   fs::path folder_;
 };
 
-std::vector<Triangle> trianglesOf(const World& world) {
-  std::vector<Triangle> list;
-  for (const SolidEntry& solid : world.solids) list.push_back(std::get<Triangle>(solid.shape));
-  return list;
-}
+std::vector<Triangle> trianglesOf(const World& world) { return world.solids.of<Triangle>(); }
 
 constexpr char kTetrahedron[] = "v 0 0 0\nv 1 0 0\nv 0 0.1 0\nv 0 0 -2.5e-3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 constexpr char kPlyHead[] =
