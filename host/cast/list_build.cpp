@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <barrier>
 #include <bit>
 #include <cstring>
+#include <exception>
+#include <optional>
 #include <utility>
 
 #include "host/cast/list_packing.h"
@@ -46,8 +47,8 @@ void ListBuilder::note(std::size_t patch) {
 
 /// What threads have together while they sift.
 struct ListBuilder::Rounds {
-  explicit Rounds(std::size_t threads) : together(static_cast<std::ptrdiff_t>(threads)) {}
-  std::barrier<> together;
+  explicit Rounds(std::size_t threads) : together(threads) {}
+  Meeting together;
   std::atomic<std::size_t> solid = 0;  // the next to look at
   std::atomic<std::size_t> next = 0;   // patch, of all rounds
 };
@@ -83,7 +84,7 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
     for (std::size_t at; (at = rounds.solid.fetch_add(few)) < to;)
       part.lookForSieve(solids, at, std::min(at + few, to), footprints, from == 0 ? nullptr : &tileLimits_,
                         discs_.get() + (at - from));
-    rounds.together.arrive_and_wait();
+    rounds.together.wait();
     for (std::size_t i = rounds.next++; i < before + patches_.size(); i = rounds.next++) {
       const std::size_t at = i - before;
       ListPatch& patch = patches_[at];
@@ -110,16 +111,16 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
       packing.add(heads);
     }
     if (to == solids.size()) packing.finish();
-    rounds.together.arrive_and_wait();
+    rounds.together.wait();
     before += patches_.size() + threads;  // each thread took one too many
     if (to == solids.size()) break;
     if (thread == 0) tileLimits_.widen(), rounds.solid = to;
-    rounds.together.arrive_and_wait();
+    rounds.together.wait();
   }
 }
 
 void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType type, bool eyeForms,
-                          const Silhouette& silhouette, const ListGrid& grid) {
+                          const Silhouette& silhouette, const ListGrid& grid, const std::function<ListRoom()>& room) {
   grid_ = grid, type_ = type, eyeForms_ = eyeForms;
   const EyeFrames eye(frame);
   const World& world = scene.world;
@@ -141,6 +142,8 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
     discs_ = std::make_unique_for_overwrite<SmallDisc[]>(most), discRoom_ = most;
   const Packs packs{world, type, eyeForms, eye};
   Rounds rounds(threads);
+  std::optional<ListRoom> to;
+  std::exception_ptr failure;
   workers_.run(static_cast<int>(threads), [&](int at) {
     const auto t = static_cast<std::size_t>(at);
     Part& part = *parts_[t];
@@ -156,14 +159,19 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
     ListPacking packing(part, wide, wideLimits_, packs);
     packing.add(part.wides);
     packing.finish();
+    rounds.together.wait();
+    if (t == 0) sumUp(), sorted_.resize(threads);
+    rounds.together.wait();
+    sortTiles(t, threads);
+    if (t + 1 == threads) layOut();
+    rounds.together.wait();
+    try {
+      if (t == 0) joinTiles(), to = room();
+    } catch (...) { failure = std::current_exception(); }
+    rounds.together.wait();
+    if (to) write(*to, t, threads);
   });
-  grazing_ = farSphere_ = boxOnFace_ = false;
-  for (const auto& part : parts_) {
-    grazing_ = grazing_ || part->grazing, farSphere_ = farSphere_ || part->farSphere;
-    boxOnFace_ = boxOnFace_ || part->boxOnFace;
-  }
-  layOut();
-  sortTiles();
+  if (failure) std::rethrow_exception(failure);
 }
 
 std::size_t ListBuilder::seen() const {
@@ -178,112 +186,140 @@ std::size_t ListBuilder::seen() const {
   return count;
 }
 
-/// Kind by kind and tile by tile, each tile's entries in the order of the solids.
-void ListBuilder::layOut() {
+/// How many entries each tile has.
+void ListBuilder::sumUp() {
+  grazing_ = farSphere_ = boxOnFace_ = wideOnes_ = false;
   kinds_ = {};
-  wideOnes_ = false;
-  std::size_t row = 0;
-  const std::size_t tiles = static_cast<std::size_t>(grid_.across) * static_cast<std::size_t>(grid_.down);
-  total_.assign(tiles, 0);
+  for (const auto& part : parts_) {
+    grazing_ = grazing_ || part->grazing, farSphere_ = farSphere_ || part->farSphere;
+    boxOnFace_ = boxOnFace_ || part->boxOnFace;
+  }
+  total_.assign(static_cast<std::size_t>(grid_.across) * static_cast<std::size_t>(grid_.down), 0);
+  order_.resize(total_.size());
   for (const ListLevel level : {wide, narrow})
     for (std::size_t kind = 0; kind < kindCount; ++kind) {
-      auto& first = first_[level][kind];
       auto& count = count_[level][kind];
-      first.clear(), count.clear();
-      const std::uint32_t rows = rowsOf(kind, eyeForms_);
-      std::vector<std::uint32_t*> counts;
-      std::size_t size = 0;
-      for (const auto& part : parts_)
-        if (auto& of = part->tiles[level][kind]; !of.empty()) counts.push_back(of.data()), size = of.size();
-      if (counts.empty()) continue;
+      count.clear();
+      for (const auto& part : parts_) {
+        const auto& of = part->tiles[level][kind];
+        if (of.empty()) continue;
+        if (count.empty()) count = of;
+        else addTo(count.data(), of.data(), of.size());
+      }
+      if (count.empty()) continue;
       kinds_[kind] = true;
       wideOnes_ = wideOnes_ || level == wide;
-      count.assign(counts[0], counts[0] + size);
-      for (std::size_t i = 1; i < counts.size(); ++i) addTo(count.data(), counts[i], size);
-      first.resize(size);
-      for (std::size_t tile = 0; tile < size; ++tile) {
-        first[tile] = static_cast<std::uint32_t>(row);
-        row += std::size_t{count[tile]} * rows;
-      }
-      next_ = first;
-      for (std::uint32_t* of : counts) place(of, next_.data(), rows, size);
-      if (level == narrow) addTo(total_.data(), count.data(), size);
+      if (level == narrow) addTo(total_.data(), count.data(), count.size());
       if (level == wide)
         for (std::size_t tile = 0, y = 0; y < static_cast<std::size_t>(grid_.down); ++y)
           for (std::size_t x = 0; x < static_cast<std::size_t>(grid_.across); ++x, ++tile)
             total_[tile] += count[y / grid_.wide * grid_.wideAcross() + x / grid_.wide];
     }
-  rows_ = row;
+}
+
+/// Kind by kind and tile by tile, each tile's entries in the order of the solids.
+void ListBuilder::layOut() {
+  rows_ = 0;
+  for (const ListLevel level : {wide, narrow})
+    for (std::size_t kind = 0; kind < kindCount; ++kind) {
+      auto& first = first_[level][kind];
+      const auto& count = count_[level][kind];
+      const std::uint32_t rows = rowsOf(kind, eyeForms_);
+      first.resize(count.size());
+      for (std::size_t tile = 0; tile < count.size(); ++tile) {
+        first[tile] = static_cast<std::uint32_t>(rows_);
+        rows_ += std::size_t{count[tile]} * rows;
+      }
+      next_ = first;
+      for (const auto& part : parts_)
+        if (auto& of = part->tiles[level][kind]; !of.empty()) place(of.data(), next_.data(), rows, of.size());
+    }
 }
 
 /// By blocks of 16x16 tiles, in which the longest come first: lanes of a vector end together, and what neighbours read and
 /// write is near. llvmpipe deals a dispatch to its threads in as many stretches as these are: so every stretch gets blocks
-/// from all over the picture.
-void ListBuilder::sortTiles() {
+/// from all over the picture. Of these a thread sorts its own: to order_ from its `from` on.
+void ListBuilder::sortTiles(std::size_t thread, std::size_t threads) {
   constexpr std::size_t side = 16, stretches = 16, most = 64;
   const auto across = static_cast<std::size_t>(grid_.across), down = static_cast<std::size_t>(grid_.down);
   const std::size_t blocksAcross = (across + side - 1) / side, blocks = blocksAcross * ((down + side - 1) / side);
-  order_.resize(total_.size());
-  std::uint32_t* to = order_.data();
-  longest_ = 0;
-  for (std::size_t stretch = 0; stretch < stretches; ++stretch)
-    for (std::size_t block = stretch; block < blocks; block += stretches) {
-      const std::size_t x0 = block % blocksAcross * side, y0 = block / blocksAcross * side;
-      const std::size_t x1 = std::min(x0 + side, across), y1 = std::min(y0 + side, down);
-      std::array<std::uint32_t, most + 1> start{};
-      const auto place = [&](std::size_t at) { return most - std::min<std::size_t>(total_[at], most); };
-      for (std::size_t y = y0; y < y1; ++y)
-        for (std::size_t x = x0; x < x1; ++x) {
-          ++start[place(y * across + x)];
-          longest_ = std::max(longest_, total_[y * across + x]);
-        }
-      std::uint32_t before = 0;
-      for (std::uint32_t& of : start) before += std::exchange(of, before);
-      const std::uint32_t listed = start[most], large = start[1];
-      for (std::size_t y = y0; y < y1; ++y)
-        for (std::size_t x = x0; x < x1; ++x) {
-          const std::size_t at = y * across + x;
-          to[start[place(at)]++] = static_cast<std::uint32_t>(at);
-        }
-      std::sort(to, to + large, [&](std::uint32_t a, std::uint32_t b) { return total_[a] > total_[b]; });
-      to += listed;  // the others are overwritten
-    }
-  listed_ = static_cast<std::size_t>(to - order_.data());
+  const auto forEachBlock = [&](std::size_t from, std::size_t end, const auto& f) {
+    for (std::size_t stretch = from; stretch < end; ++stretch)
+      for (std::size_t block = stretch; block < blocks; block += stretches) {
+        const std::size_t x = block % blocksAcross * side, y = block / blocksAcross * side;
+        f(x, y, std::min(x + side, across), std::min(y + side, down));
+      }
+  };
+  const std::size_t first = stretches * thread / threads, end = stretches * (thread + 1) / threads;
+  SortedTiles& sorted = sorted_[thread];
+  sorted = {};
+  forEachBlock(0, first, [&](std::size_t x0, std::size_t y0, std::size_t x1, std::size_t y1) {
+    sorted.from += (x1 - x0) * (y1 - y0);
+  });
+  std::uint32_t* const begin = order_.data() + sorted.from;
+  std::uint32_t* to = begin;
+  forEachBlock(first, end, [&](std::size_t x0, std::size_t y0, std::size_t x1, std::size_t y1) {
+    std::array<std::uint32_t, most + 1> start{};
+    const auto place = [&](std::size_t at) { return most - std::min<std::size_t>(total_[at], most); };
+    for (std::size_t y = y0; y < y1; ++y)
+      for (std::size_t x = x0; x < x1; ++x) {
+        ++start[place(y * across + x)];
+        sorted.longest = std::max(sorted.longest, total_[y * across + x]);
+      }
+    std::uint32_t before = 0;
+    for (std::uint32_t& of : start) before += std::exchange(of, before);
+    const std::uint32_t listed = start[most], large = start[1];
+    for (std::size_t y = y0; y < y1; ++y)
+      for (std::size_t x = x0; x < x1; ++x) {
+        const std::size_t at = y * across + x;
+        to[start[place(at)]++] = static_cast<std::uint32_t>(at);
+      }
+    std::sort(to, to + large, [&](std::uint32_t a, std::uint32_t b) { return total_[a] > total_[b]; });
+    to += listed;  // the others are overwritten
+  });
+  sorted.count = static_cast<std::size_t>(to - begin);
+}
+
+/// What the threads have sorted, one after the other, and then the tiles without solids.
+void ListBuilder::joinTiles() {
+  listed_ = 0, longest_ = 0;
+  for (const SortedTiles& sorted : sorted_) {
+    std::copy_n(order_.begin() + static_cast<std::ptrdiff_t>(sorted.from), sorted.count,
+                order_.begin() + static_cast<std::ptrdiff_t>(listed_));
+    listed_ += sorted.count, longest_ = std::max(longest_, sorted.longest);
+  }
+  std::uint32_t* to = order_.data() + listed_;
   for (std::uint32_t tile = 0; tile < total_.size() && to != order_.data() + order_.size(); ++tile) {
     *to = tile;
     to += total_[tile] == 0;
   }
 }
 
-void ListBuilder::write(std::span<std::byte> rows, std::span<std::byte> lanes, std::size_t laneCount,
-                        const std::array<bool, kindCount>& slots) {
+/// A thread's share.
+void ListBuilder::write(const ListRoom& room, std::size_t thread, std::size_t threads) {
   std::size_t laneBytes = sizeof(ListLane);
-  for (const bool slot : slots) laneBytes += slot ? sizeof(ListSpan) : 0;
+  for (const bool slot : room.slots) laneBytes += slot ? sizeof(ListSpan) : 0;
   const auto value = [](const std::vector<std::uint32_t>& of, std::size_t i) { return of.empty() ? 0 : of[i]; };
-  const std::size_t threads = rows_ < 4096 ? 1 : parts_.size();
   const std::uint32_t across = grid_.across, wideAcross = grid_.wideAcross();
   const int wideShift = std::countr_zero(static_cast<std::uint32_t>(grid_.wide));
-  workers_.run(static_cast<int>(threads), [&](int at) {
-    const auto t = static_cast<std::size_t>(at);
-    for (std::size_t lane = laneCount * t / threads; lane < laneCount * (t + 1) / threads; ++lane) {
-      const std::uint32_t tile = order_[lane], x = tile % across, y = tile / across;
-      const std::uint32_t wideTile = (y >> wideShift) * wideAcross + (x >> wideShift);
-      std::byte* to = lanes.data() + lane * laneBytes;
-      const ListLane head{x * ListGrid::tile, y * ListGrid::tile, {}};
-      std::memcpy(to, &head, sizeof head);
-      to += sizeof head;
-      for (std::size_t kind = 0; kind < kindCount; ++kind) {
-        if (!slots[kind]) continue;
-        const std::uint32_t wideCount = value(count_[wide][kind], wideTile);
-        const ListSpan span{value(first_[wide][kind], wideTile), wideCount, value(first_[narrow][kind], tile),
-                            wideCount + value(count_[narrow][kind], tile)};
-        std::memcpy(to, &span, sizeof span);
-        to += sizeof span;
-      }
+  for (std::size_t lane = room.laneCount * thread / threads; lane < room.laneCount * (thread + 1) / threads; ++lane) {
+    const std::uint32_t tile = order_[lane], x = tile % across, y = tile / across;
+    const std::uint32_t wideTile = (y >> wideShift) * wideAcross + (x >> wideShift);
+    std::byte* to = room.lanes.data() + lane * laneBytes;
+    const ListLane head{x * ListGrid::tile, y * ListGrid::tile, {}};
+    std::memcpy(to, &head, sizeof head);
+    to += sizeof head;
+    for (std::size_t kind = 0; kind < kindCount; ++kind) {
+      if (!room.slots[kind]) continue;
+      const std::uint32_t wideCount = value(count_[wide][kind], wideTile);
+      const ListSpan span{value(first_[wide][kind], wideTile), wideCount, value(first_[narrow][kind], tile),
+                          wideCount + value(count_[narrow][kind], tile)};
+      std::memcpy(to, &span, sizeof span);
+      to += sizeof span;
     }
-    for (std::size_t part = t; part < parts_.size(); part += threads)
-      parts_[part]->write(rows.data(), rowBytes(type_), eyeForms_);
-  });
+  }
+  for (std::size_t part = thread; part < parts_.size(); part += threads)
+    parts_[part]->write(room.rows.data(), rowBytes(type_), eyeForms_);
 }
 
 }  // namespace solidcast

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -43,6 +44,13 @@ struct ListSpan {
   std::uint32_t wideFirst, wideCount, first, count;  // rows; `count` is of both
 };
 
+/// The rows, and for the first `laneCount` of tiles() a ListLane and a ListSpan for each of `slots` (kinds in order).
+struct ListRoom {
+  std::span<std::byte> rows, lanes;
+  std::size_t laneCount;
+  std::array<bool, kindCount> slots;
+};
+
 class ListBuilder {
  public:
   struct Part;  // a thread's share of the solids
@@ -53,8 +61,9 @@ class ListBuilder {
   /// Which solids are seen where, and their records: forms for the camera's one eye, correct to 2^-3 of the type's
   /// rounding (docs/numerics.md), or the solids themselves from the camera's centre, for rays that are free.
   /// `eye` is eyeFrame() of the scene, for forms of `type`, otherwise for f64.
+  /// `room` is called when what is found is known; to what it says the lists are then written.
   void collect(const Scene& scene, const EyeFrame& eye, RealType type, bool eyeForms, const Silhouette& silhouette,
-               const ListGrid& grid);
+               const ListGrid& grid, const std::function<ListRoom()>& room);
 
   // What collect() found:
   std::array<bool, kindCount> kinds() const { return kinds_; }
@@ -69,17 +78,16 @@ class ListBuilder {
   std::size_t listedTiles() const { return listed_; }
   std::uint32_t longest() const { return longest_; }  // list of a tile
 
-  /// The rows, and for the first `lanes` of tiles() a ListLane and a ListSpan for each of `slots` (kinds in order).
-  void write(std::span<std::byte> rows, std::span<std::byte> lanes, std::size_t laneCount,
-             const std::array<bool, kindCount>& slots);
-
  private:
   struct Rounds;
   /// A thread's part of finding what is not hidden, in rounds of all threads.
   void sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds, Footprints& footprints);
   void note(std::size_t patch);
+  void sumUp();
   void layOut();
-  void sortTiles();
+  void sortTiles(std::size_t thread, std::size_t threads);
+  void joinTiles();
+  void write(const ListRoom& room, std::size_t thread, std::size_t threads);
 
   ListGrid grid_;
   RealType type_{};
@@ -98,6 +106,11 @@ class ListBuilder {
   std::vector<std::uint32_t> next_;           // layOut's
   std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles()
   std::uint32_t longest_ = 0;
+  struct SortedTiles {
+    std::size_t from = 0, count = 0;
+    std::uint32_t longest = 0;
+  };
+  std::vector<SortedTiles> sorted_;  // by thread
 };
 
 }  // namespace solidcast

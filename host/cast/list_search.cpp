@@ -72,7 +72,21 @@ void ListSearch::build(const PassTarget& target, const Band& band) {
   ListGrid grid;
   grid.region = {job_.crop.x, job_.crop.y + band.firstRow, band.width, band.rows};
   grid.across = target.stride / ListGrid::tile, grid.down = target.rows / ListGrid::tile;
-  builder_.collect(*scene_, eye_, program_.real, program_.eye(), *silhouette_, grid);
+  builder_.collect(*scene_, eye_, program_.real, program_.eye(), *silhouette_, grid, [this] { return room(); });
+  job_.stats.flatten_ms += flattening.ms();
+  if (!told_)
+    job_.stats.plan.push_back("lists of " + std::to_string(builder_.seen()) + " solids for " +
+                              std::to_string(builder_.listedTiles()) + " tiles of 4x4 pixels, up to " +
+                              std::to_string(builder_.longest()) +
+                              " in one: " + std::to_string(builder_.rows() * rowBytes(program_.real)) + " bytes");
+  told_ = true;
+  Stopwatch making;
+  makePipeline();
+  job_.stats.shader_ms += making.ms();
+}
+
+/// Buffers that hold what has been found.
+ListRoom ListSearch::room() {
   for (std::size_t k = 0; k < kindCount; ++k) kinds_[k] = kinds_[k] || builder_.kinds()[k];
   const bool exact = program_.method == Method::exact;
   grazing_ = grazing_ || (exact && builder_.grazing());
@@ -98,16 +112,7 @@ void ListSearch::build(const PassTarget& target, const Band& band) {
   reserve(job_.device, records_, bytes + readAhead * rowBytes(program_.real), use);
   reserve(job_.device, lists_, listBytes, use);
   reserve(job_.device, state_, portioned_ ? lanes_ * stateBytes : 16, gpu::BufferUse::storage);
-  builder_.write(records_.bytes(), lists_.bytes(), lanes_, kinds_);
-  job_.stats.flatten_ms += flattening.ms();
-  if (!told_)
-    job_.stats.plan.push_back("lists of " + std::to_string(builder_.seen()) + " solids for " +
-                              std::to_string(builder_.listedTiles()) + " tiles of 4x4 pixels, up to " +
-                              std::to_string(builder_.longest()) + " in one: " + std::to_string(bytes) + " bytes");
-  told_ = true;
-  Stopwatch making;
-  makePipeline();
-  job_.stats.shader_ms += making.ms();
+  return {records_.bytes(), lists_.bytes(), lanes_, kinds_};
 }
 
 void ListSearch::makePipeline() {

@@ -19,6 +19,7 @@ class ListSearch : public PixelSearch {
 
  private:
   void build(const PassTarget& target, const Band& band);
+  ListRoom room();
   void loadShader();
   void makePipeline();
   void fillUnlisted(const PassTarget& target) const;

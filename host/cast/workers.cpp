@@ -3,6 +3,31 @@
 #include <algorithm>
 
 namespace solidcast {
+namespace {
+
+/// For some 50 us at most; whether it has come to be.
+bool soon(const auto& condition) {
+  for (int i = 0; i < 2000; ++i) {
+    if (condition()) return true;
+#ifdef __x86_64__
+    __builtin_ia32_pause();
+#endif
+  }
+  return false;
+}
+
+}  // namespace
+
+void Meeting::wait() {
+  const int round = round_;
+  if (--missing_ == 0) {
+    missing_ = threads_;
+    ++round_;
+    round_.notify_all();
+    return;
+  }
+  if (!soon([&] { return round_ != round; })) round_.wait(round);
+}
 
 Workers::Workers() {
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
@@ -26,6 +51,7 @@ void Workers::run(int count, const std::function<void(int)>& work) {
   }
   start_.notify_all();
   take();
+  if (soon([&] { return busy_ == 0; })) return;
   std::unique_lock lock(mutex_);
   end_.wait(lock, [this] { return busy_ == 0; });
 }
@@ -43,8 +69,9 @@ void Workers::help() {
       seen = round_;
     }
     take();
+    if (--busy_ > 0) continue;
     const std::lock_guard lock(mutex_);
-    if (--busy_ == 0) end_.notify_one();
+    end_.notify_one();
   }
 }
 

@@ -1,5 +1,6 @@
 // Threads that stay, for work of a millisecond or so, of which starting them would be a part: all cores take the next piece
-// until none is left.
+// until none is left. To wake a thread takes up to 0.1 ms: who waits for work of less looks again and again for a while before
+// he sleeps.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -9,6 +10,19 @@
 #include <vector>
 
 namespace solidcast {
+
+/// Where threads wait for each other.
+class Meeting {
+ public:
+  explicit Meeting(std::size_t threads) : threads_(threads), missing_(threads) {}
+  /// Until all have come.
+  void wait();
+
+ private:
+  const std::size_t threads_;
+  std::atomic<std::size_t> missing_;
+  std::atomic<int> round_ = 0;
+};
 
 class Workers {
  public:
@@ -28,7 +42,8 @@ class Workers {
   std::condition_variable start_, end_;
   const std::function<void(int)>* work_ = nullptr;
   std::atomic<int> next_ = 0;
-  int count_ = 0, busy_ = 0, round_ = 0;
+  std::atomic<int> busy_ = 0;
+  int count_ = 0, round_ = 0;
   bool over_ = false;
   std::vector<std::thread> helpers_;
 };

@@ -50,11 +50,12 @@ void lists(benchmark::State& state, const char* kind, RealType type) {
   std::vector<std::byte> rows, lanes;
   for (auto _ : state) {
     const Silhouette silhouette(scene, kWidth, kHeight, 1);
-    builder.collect(scene, eyeFrame(scene, type), type, true, silhouette, grid);
-    const std::size_t laneCount = builder.listedTiles();
-    rows.resize(std::max(rows.size(), builder.rows() * rowBytes(type)));
-    lanes.resize(std::max(lanes.size(), laneCount * (1 + kindCount) * 16));
-    builder.write(rows, lanes, laneCount, builder.kinds());
+    builder.collect(scene, eyeFrame(scene, type), type, true, silhouette, grid, [&] {
+      const std::size_t laneCount = builder.listedTiles();
+      rows.resize(std::max(rows.size(), builder.rows() * rowBytes(type)));
+      lanes.resize(std::max(lanes.size(), laneCount * (1 + kindCount) * 16));
+      return ListRoom{rows, lanes, laneCount, builder.kinds()};
+    });
   }
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
