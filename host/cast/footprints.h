@@ -95,8 +95,9 @@ class Footprints {
     double lastX, lastY;
     double inverseUnit;  // of length
     double margin;       // in pixels, within which the shader's rounding may move an edge
-    double lost;         // of a sphere's q, relative to its terms: what the shader's rounding can take
-    double flat;         // a flat solid seen at a smaller sine than this hides nothing
+    double rough;  // in pixels, what fp32 may move a sphere's place by, above the errors that go with its distance
+    double lost;   // of a sphere's q, relative to its terms: what the shader's rounding can take
+    double flat;   // a flat solid seen at a smaller sine than this hides nothing
     DepthScale scale;
     double edges;  // the margin where rays go through the centres of pixels alone; more than all otherwise
   };
