@@ -160,13 +160,13 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
     packing.add(part.wides);
     packing.finish();
     rounds.together.wait();
-    if (t == 0) sumUp(), sorted_.resize(threads);
+    if (t == 0) sumUp();
     rounds.together.wait();
-    sortTiles(t, threads);
-    if (t + 1 == threads) layOut();
+    if (t == 0) layOut();
+    if (t + 1 == threads) sortTiles();
     rounds.together.wait();
     try {
-      if (t == 0) joinTiles(), to = room();
+      if (t == 0) to = room();
     } catch (...) { failure = std::current_exception(); }
     rounds.together.wait();
     if (to) write(*to, t, threads);
@@ -195,7 +195,6 @@ void ListBuilder::sumUp() {
     boxOnFace_ = boxOnFace_ || part->boxOnFace;
   }
   total_.assign(static_cast<std::size_t>(grid_.across) * static_cast<std::size_t>(grid_.down), 0);
-  order_.resize(total_.size());
   for (const ListLevel level : {wide, narrow})
     for (std::size_t kind = 0; kind < kindCount; ++kind) {
       auto& count = count_[level][kind];
@@ -238,57 +237,37 @@ void ListBuilder::layOut() {
 
 /// By blocks of 16x16 tiles, in which the longest come first: lanes of a vector end together, and what neighbours read and
 /// write is near. llvmpipe deals a dispatch to its threads in as many stretches as these are: so every stretch gets blocks
-/// from all over the picture. Of these a thread sorts its own: to order_ from its `from` on.
-void ListBuilder::sortTiles(std::size_t thread, std::size_t threads) {
+/// from all over the picture.
+void ListBuilder::sortTiles() {
   constexpr std::size_t side = 16, stretches = 16, most = 64;
   const auto across = static_cast<std::size_t>(grid_.across), down = static_cast<std::size_t>(grid_.down);
   const std::size_t blocksAcross = (across + side - 1) / side, blocks = blocksAcross * ((down + side - 1) / side);
-  const auto forEachBlock = [&](std::size_t from, std::size_t end, const auto& f) {
-    for (std::size_t stretch = from; stretch < end; ++stretch)
-      for (std::size_t block = stretch; block < blocks; block += stretches) {
-        const std::size_t x = block % blocksAcross * side, y = block / blocksAcross * side;
-        f(x, y, std::min(x + side, across), std::min(y + side, down));
-      }
-  };
-  const std::size_t first = stretches * thread / threads, end = stretches * (thread + 1) / threads;
-  SortedTiles& sorted = sorted_[thread];
-  sorted = {};
-  forEachBlock(0, first, [&](std::size_t x0, std::size_t y0, std::size_t x1, std::size_t y1) {
-    sorted.from += (x1 - x0) * (y1 - y0);
-  });
-  std::uint32_t* const begin = order_.data() + sorted.from;
-  std::uint32_t* to = begin;
-  forEachBlock(first, end, [&](std::size_t x0, std::size_t y0, std::size_t x1, std::size_t y1) {
-    std::array<std::uint32_t, most + 1> start{};
-    const auto place = [&](std::size_t at) { return most - std::min<std::size_t>(total_[at], most); };
-    for (std::size_t y = y0; y < y1; ++y)
-      for (std::size_t x = x0; x < x1; ++x) {
-        ++start[place(y * across + x)];
-        sorted.longest = std::max(sorted.longest, total_[y * across + x]);
-      }
-    std::uint32_t before = 0;
-    for (std::uint32_t& of : start) before += std::exchange(of, before);
-    const std::uint32_t listed = start[most], large = start[1];
-    for (std::size_t y = y0; y < y1; ++y)
-      for (std::size_t x = x0; x < x1; ++x) {
-        const std::size_t at = y * across + x;
-        to[start[place(at)]++] = static_cast<std::uint32_t>(at);
-      }
-    std::sort(to, to + large, [&](std::uint32_t a, std::uint32_t b) { return total_[a] > total_[b]; });
-    to += listed;  // the others are overwritten
-  });
-  sorted.count = static_cast<std::size_t>(to - begin);
-}
-
-/// What the threads have sorted, one after the other, and then the tiles without solids.
-void ListBuilder::joinTiles() {
-  listed_ = 0, longest_ = 0;
-  for (const SortedTiles& sorted : sorted_) {
-    std::copy_n(order_.begin() + static_cast<std::ptrdiff_t>(sorted.from), sorted.count,
-                order_.begin() + static_cast<std::ptrdiff_t>(listed_));
-    listed_ += sorted.count, longest_ = std::max(longest_, sorted.longest);
-  }
-  std::uint32_t* to = order_.data() + listed_;
+  order_.resize(total_.size());
+  std::uint32_t* to = order_.data();
+  longest_ = 0;
+  for (std::size_t stretch = 0; stretch < stretches; ++stretch)
+    for (std::size_t block = stretch; block < blocks; block += stretches) {
+      const std::size_t x0 = block % blocksAcross * side, y0 = block / blocksAcross * side;
+      const std::size_t x1 = std::min(x0 + side, across), y1 = std::min(y0 + side, down);
+      std::array<std::uint32_t, most + 1> start{};
+      const auto place = [&](std::size_t at) { return most - std::min<std::size_t>(total_[at], most); };
+      for (std::size_t y = y0; y < y1; ++y)
+        for (std::size_t x = x0; x < x1; ++x) {
+          ++start[place(y * across + x)];
+          longest_ = std::max(longest_, total_[y * across + x]);
+        }
+      std::uint32_t before = 0;
+      for (std::uint32_t& of : start) before += std::exchange(of, before);
+      const std::uint32_t listed = start[most], large = start[1];
+      for (std::size_t y = y0; y < y1; ++y)
+        for (std::size_t x = x0; x < x1; ++x) {
+          const std::size_t at = y * across + x;
+          to[start[place(at)]++] = static_cast<std::uint32_t>(at);
+        }
+      std::sort(to, to + large, [&](std::uint32_t a, std::uint32_t b) { return total_[a] > total_[b]; });
+      to += listed;  // the others are overwritten
+    }
+  listed_ = static_cast<std::size_t>(to - order_.data());
   for (std::uint32_t tile = 0; tile < total_.size() && to != order_.data() + order_.size(); ++tile) {
     *to = tile;
     to += total_[tile] == 0;

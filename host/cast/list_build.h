@@ -85,8 +85,7 @@ class ListBuilder {
   void note(std::size_t patch);
   void sumUp();
   void layOut();
-  void sortTiles(std::size_t thread, std::size_t threads);
-  void joinTiles();
+  void sortTiles();
   void write(const ListRoom& room, std::size_t thread, std::size_t threads);
 
   ListGrid grid_;
@@ -106,11 +105,6 @@ class ListBuilder {
   std::vector<std::uint32_t> next_;           // layOut's
   std::vector<std::uint32_t> total_, order_;  // entries by tile; tiles()
   std::uint32_t longest_ = 0;
-  struct SortedTiles {
-    std::size_t from = 0, count = 0;
-    std::uint32_t longest = 0;
-  };
-  std::vector<SortedTiles> sorted_;  // by thread
 };
 
 }  // namespace solidcast
