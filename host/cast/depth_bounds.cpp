@@ -172,15 +172,11 @@ WIDE void deepestOf(const DepthCode* row, std::size_t stride, std::size_t tiles,
   }
 }
 
-/// Of each tile and its neighbours to the right and below, at a distance of `step`; there are none beyond the last.
-WIDE void widened(const DepthCode* of, std::size_t across, std::size_t down, std::size_t step, DepthCode* to) {
-  for (std::size_t y = 0; y < down; ++y) {
-    const DepthCode *here = of + y * across, *below = of + std::min(y + step, down - 1) * across;
-    for (std::size_t x = 0; x + step < across; ++x)
-      to[y * across + x] = std::max(std::max(here[x], here[x + step]), std::max(below[x], below[x + step]));
-    for (std::size_t x = across - std::min(step, across); x < across; ++x)
-      to[y * across + x] = std::max(std::max(here[x], here[across - 1]), std::max(below[x], below[across - 1]));
-  }
+/// Of each tile and its neighbours to the right and below, at a distance of `step`. To the right of a row's last tile the next
+/// row is taken, which makes the limit no more than too deep; below the last row is 0.
+WIDE void widened(const DepthCode* of, std::size_t tiles, std::size_t across, std::size_t step, DepthCode* to) {
+  const DepthCode* below = of + step * across;
+  for (std::size_t i = 0; i < tiles; ++i) to[i] = most(most(of[i], of[i + step]), most(below[i], below[i + step]));
 }
 
 /// Whether some pixel of a small solid's rectangle is not hit before it begins; `from` is its first. Always whole eights of
@@ -240,13 +236,19 @@ WIDE std::size_t visibleOf(const DepthCode* depth, std::ptrdiff_t stride, const 
 
 void TileLimits::start(std::size_t across, std::size_t down) {
   across_ = across, down_ = down;
-  for (auto* of : {&byTile_, &deepest2_, &deepest4_}) of->assign(across * down, DepthScale::none);
-  levels_ = {byTile_.data(), deepest2_.data(), deepest4_.data(), deepest4_.data()};
+  const std::size_t tiles = across * down;
+  for (auto* of : {&byTile_, &deepest2_, &deepest3_, &deepest4_}) {
+    of->resize(tiles + 2 * (across + 1));
+    std::fill_n(of->begin(), tiles, DepthScale::none);
+    std::fill(of->begin() + static_cast<std::ptrdiff_t>(tiles), of->end(), DepthCode{0});
+  }
+  levels_ = {byTile_.data(), deepest2_.data(), deepest3_.data(), deepest4_.data()};
 }
 
 void TileLimits::widen() {
-  widened(byTile_.data(), across_, down_, 1, deepest2_.data());
-  widened(deepest2_.data(), across_, down_, 2, deepest4_.data());
+  widened(byTile_.data(), across_ * down_, across_, 1, deepest2_.data());
+  widened(deepest2_.data(), across_ * down_, across_, 1, deepest3_.data());
+  widened(deepest2_.data(), across_ * down_, across_, 2, deepest4_.data());
 }
 
 void DepthBounds::start(const Crop& area, int width, int height) {

@@ -44,8 +44,8 @@ class TileLimits {
 
  private:
   std::size_t across_ = 0, down_ = 0;
-  std::vector<DepthCode> byTile_, deepest2_, deepest4_;  // of 1, 2x2 and 4x4 tiles from each on
-  std::array<const DepthCode*, 4> levels_{};             // by how many tiles, less one, a solid is in
+  std::vector<DepthCode> byTile_, deepest2_, deepest3_, deepest4_;  // of 1, 2x2, ... tiles from each on
+  std::array<const DepthCode*, 4> levels_{};                        // by how many tiles, less one, a solid is in
 };
 
 /// What is seen of a solid within a rectangle of whole tiles, pixels counted from that one's corner. In words, for vectors.

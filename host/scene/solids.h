@@ -169,7 +169,7 @@ class Solids {
           if (empty()) kind_ = kind;
           if (places_.empty() && kind != kind_)
             for (std::size_t i = 0; i < size(); ++i) places_.push_back(placed(kind_, i));
-          if (!places_.empty() || kind != kind_) places_.push_back(placed(kind, array.size()));
+          if (!places_.empty()) places_.push_back(placed(kind, array.size()));
           array.push_back(shape);
         },
         solid.shape);
