@@ -263,7 +263,8 @@ class EmbreePeer final : public Peer {
 
   void writeSolid(ShapeRef shape, const Target& target, std::size_t at) {
     const std::size_t kind = shape.index();
-    shape.visit([&](const auto& solid) { write(solid, target.numbers + at * static_cast<std::size_t>(kFloats[kind])); });
+    shape.visit(
+        [&](const auto& solid) { write(solid, target.numbers + at * static_cast<std::size_t>(kFloats[kind])); });
     if (const auto* s = shape.getIf<Disc>()) put(target.normals + 3 * at, glm::normalize(vec(s->normal)));
     if (const auto* s = shape.getIf<InfinitePlane>()) users_[plane].boxes[at] = bounds(*s);
     if (const auto* s = shape.getIf<AABox>()) users_[box].boxes[at] = bounds(*s);

@@ -9,9 +9,8 @@
 namespace solidcast {
 namespace {
 
-template <class Number>
 struct Slopes {
-  Number x0, x1, y0, y1;
+  double x0, x1, y0, y1;
 };
 
 /// The first pixel whose centre is at or beyond `from`, and the last at or before `to`, both in [0, last] or none.
@@ -24,8 +23,8 @@ inline void pixels(Number from, Number to, Number last, std::int32_t& first, std
 }
 
 /// `hides`: the depth beyond which the solid hides what is behind, where `covers`.
-inline void store(const Footprints::View& v, const Slopes<double>& s, bool plain, double nearest, double hides,
-                  bool covers, std::size_t i, auto& r) {
+inline void store(const Footprints::View& v, const Slopes& s, bool plain, double nearest, double hides, bool covers,
+                  std::size_t i, auto& r) {
   const double x0 = s.x0 * v.perX, x1 = s.x1 * v.perX, y0 = s.y0 * v.perY, y1 = s.y1 * v.perY;
   pixels(x0 + v.lowX - 2e-9 * std::abs(x0), x1 + v.highX + 2e-9 * std::abs(x1), v.lastX, r.x0[i], r.x1[i]);
   pixels(y0 + v.lowY - 2e-9 * std::abs(y0), y1 + v.highY + 2e-9 * std::abs(y1), v.lastY, r.y0[i], r.y1[i]);
@@ -109,7 +108,7 @@ inline __attribute__((always_inline)) bool spheres(const Footprints::View& view,
   const auto lastX = static_cast<float>(v.lastX), lastY = static_cast<float>(v.lastY);
   const auto unit = static_cast<float>(1 / v.inverseUnit), lost = static_cast<float>(1.01 * v.lost);
   const auto margin = static_cast<float>(v.margin + v.rough), per = perX < perY ? perX : perY;
-  std::int32_t far = 0;
+  std::int32_t far = 0, near = 0;
   for (std::size_t i = 0, count = b.count; i < count; ++i) {
     const double x = (b.v[0][i] - v.origin[0]) * v.inverseUnit, y = (b.v[1][i] - v.origin[1]) * v.inverseUnit;
     const double z = (b.v[2][i] - v.origin[2]) * v.inverseUnit, r = b.v[3][i] * v.inverseUnit;
@@ -129,7 +128,8 @@ inline __attribute__((always_inline)) bool spheres(const Footprints::View& view,
     pixels(acrossX - halfX - moreX + lowX, acrossX + halfX + moreX + highX, lastX, b.x0[i], b.x1[i]);
     pixels(acrossY - halfY - moreY + lowY, acrossY + halfY + moreY + highY, lastY, b.y0[i], b.y1[i]);
     // Where squares neither overflow nor vanish, and q keeps its digits.
-    b.plain[i] = (Z > 2 * big) & (Z > 1e-15f) & (size < 1e18f);
+    const bool plain = (Z > 2 * big) & (Z > 1e-15f) & (size < 1e18f);
+    b.plain[i] = plain, near |= (Z > big) & !plain;
     b.nearest[i] = v.scale.begins((Z - big) * (1 - 1e-6f) * unit);
     const float square = X * X + Y * Y + Z * Z;
     const bool covers = (Z > 0) & (square > radius * radius * 1.001f);
@@ -137,10 +137,12 @@ inline __attribute__((always_inline)) bool spheres(const Footprints::View& view,
     b.hides[i] = hides;
     if constexpr (DISCS) {
       const float slope = 1 / Z, held = heldOf(lost, radius, square, Z, slope);
-      b.disc[i] = smallDisc(X * slope * perX + middleX, Y * slope * perY + middleY,
-                            std::sqrt(held) * slope * per - margin, hides);
+      const std::uint64_t disc = smallDisc(X * slope * perX + middleX, Y * slope * perY + middleY,
+                                           std::sqrt(held) * slope * per - margin, hides);
+      b.disc[i] = plain ? disc : 0;
     }
   }
+  b.near = near;
   return far;
 }
 
@@ -256,7 +258,7 @@ inline __attribute__((always_inline)) void corners(const Footprints::View& view,
   const Footprints::View v = view;
   for (std::size_t i = 0, count = b.count; i < count; ++i) {
     const auto& p = b.v;
-    Slopes<double> s{1e300, -1e300, 1e300, -1e300};
+    Slopes s{1e300, -1e300, 1e300, -1e300};
     double nearest = 1e300, farthest = 0, around[2 * CORNERS];
     bool front = true, covers = POLYGON;
 #pragma GCC unroll 9
@@ -394,6 +396,7 @@ void Footprints::calculate(Finding what) {
     farSphere_ |= covers                   ? ofCoveringSpheres(view_, spheres_)
                   : what == Finding::discs ? ofDiscs(view_, spheres_)
                                            : ofSpheres(view_, spheres_);
+    if (!covers && spheres_.near) ofCoveringSpheres(view_, spheres_);  // in fp64 all of them, but for the discs
     if (!vectors_) std::fill_n(spheres_.plain, spheres_.count, 0);
   }
   if (triangles_.count) covers ? ofCoveringTriangles(view_, triangles_) : ofTriangles(view_, triangles_);

@@ -119,6 +119,7 @@ class Footprints {
   static void fetchNext(const auto& batch, std::size_t i) { __builtin_prefetch(batch.next + i * batch.stride); }
   struct Spheres : Batch<4, 4> {
     alignas(64) std::uint64_t disc[block];  // SmallDisc's bits
+    bool near;                              // some is too near for fp32
   };
   using Triangles = Batch<9, 6>;
   using Quads = Batch<12, 8>;

@@ -56,8 +56,7 @@ void ListPacking::alone(const auto& solid, const ListHead& head) {
     if (record.kind < 0) return;
     part_.grazing = part_.grazing || record.grazing;
     const std::size_t rowSize = rowBytes(type);
-    std::byte* to =
-        room(static_cast<std::size_t>(record.kind), rowSize * static_cast<std::size_t>(record.rows), head);
+    std::byte* to = room(static_cast<std::size_t>(record.kind), rowSize * static_cast<std::size_t>(record.rows), head);
     for (int r = 0; r < record.rows; ++r, to += rowSize) writeRow(to, type, record.row[r]);
   });
   if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, AABox>)

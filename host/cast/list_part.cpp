@@ -127,8 +127,8 @@ void forEachBlock(const Solids& solids, std::size_t from, std::size_t to, auto&&
 
 }  // namespace
 
-void ListBuilder::Part::lookForSieve(const Solids& solids, std::size_t from, std::size_t to,
-                                     Footprints& footprints, const TileLimits* limits, SmallDisc* discs) {
+void ListBuilder::Part::lookForSieve(const Solids& solids, std::size_t from, std::size_t to, Footprints& footprints,
+                                     const TileLimits* limits, SmallDisc* discs) {
   const int shift = std::countr_zero(static_cast<std::uint32_t>(grid_.wide * ListGrid::tile));
   const std::int32_t across = grid_.wideAcross();
   std::vector<SeenWithin>* const bins = seenIn.data();

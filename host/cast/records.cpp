@@ -107,8 +107,7 @@ Records eyeRecords(const World& world, const EyeFrame& eye, RealType type) {
       flags.grazing = flags.grazing || (record.kind >= 0 && record.grazing);
     };
     shape.visit([&](const auto& s) { packed(s, frames, i, type, keep); });
-    if (const auto* sphere = shape.getIf<Sphere>())
-      flags.farSphere = flags.farSphere || isFar(*sphere, frames.plain);
+    if (const auto* sphere = shape.getIf<Sphere>()) flags.farSphere = flags.farSphere || isFar(*sphere, frames.plain);
     if (const auto* box = shape.getIf<AABox>())
       flags.boxOnFace = flags.boxOnFace || eyeOnFacePlane(*box, frames.extended);
   }

@@ -90,8 +90,9 @@ ExactHit SecondPass::castAt(const RayQ& ray, std::int32_t index) const {
 }
 
 Surface SecondPass::surface(const RayQ& ray, const ExactHit& hit) const {
-  return world_.solids.shape(static_cast<std::size_t>(hit.index))
-      .visit([&](const auto& s) { return solidcast::surface(s, ray, hit.t); });
+  return world_.solids.shape(static_cast<std::size_t>(hit.index)).visit([&](const auto& s) {
+    return solidcast::surface(s, ray, hit.t);
+  });
 }
 
 void inParallel(std::size_t n, const std::function<void(std::size_t)>& f, std::size_t share) {

@@ -135,6 +135,23 @@ TEST(Footprints, HoldThePixelOnASpheresRim) {
   EXPECT_GT(outside, 10000);  // it is not taken much larger than it is
 }
 
+/// Spheres so near that fp32 does not serve hide as well, what lies beside them in the block too.
+TEST(Footprints, OfNearSpheresHide) {
+  Measured m;
+  const double eye = static_cast<double>(m.rays[0].origin.z);
+  for (const double away : {1.02, 1.5, 1.99, 2.01, 3.0}) {
+    const Shape shapes[] = {Sphere{{0, 0, eye - 2 * away}, 2}, Sphere{{1, 0, eye - 20}, 0.5}};
+    const ShapeRef refs[] = {shapes[0], shapes[1]};
+    int found = 0;
+    m.footprints.find(std::span(refs), [&](std::size_t i, const Footprint& f) {
+      EXPECT_TRUE(f.seen()) << away << " " << i;
+      EXPECT_NE(f.hides, DepthScale::none) << away << " " << i;
+      ++found;
+    });
+    EXPECT_EQ(found, 2);
+  }
+}
+
 void depthsAreLoweredOnlyWhereHit(bool asDiscs) {
   Measured m;
   int hits = 0, lowered = 0;
