@@ -232,6 +232,15 @@ WIDE std::size_t visibleOf(const DepthCode* depth, std::ptrdiff_t stride, const 
   return found;
 }
 
+WIDE std::size_t notBehind(const TileLimits& tiles, std::span<const SeenWithin> solids, SeenWithin* to) {
+  std::size_t count = 0;
+  for (const SeenWithin& s : solids) {
+    to[count] = s;
+    count += !tiles.behind(s.first & 0xffff, s.first >> 16, s.last & 0xffff, s.last >> 16, s.nearest());
+  }
+  return count;
+}
+
 }  // namespace
 
 void TileLimits::start(std::size_t across, std::size_t down) {
@@ -319,6 +328,13 @@ void DepthBounds::noteTiles() {
     deepest_ = std::max(deepest_, *std::max_element(row, row + across));
   }
   tiles_.widen();
+}
+
+void DepthBounds::addNotBehind(std::span<const SeenWithin> solids, std::vector<SeenWithin>& to) const {
+  const std::size_t before = to.size();
+  if (deepest_ == DepthScale::none) return void(to.insert(to.end(), solids.begin(), solids.end()));
+  to.resize(before + solids.size());
+  to.resize(before + notBehind(tiles_, solids, to.data() + before));
 }
 
 std::size_t DepthBounds::visible(std::span<const SeenWithin> solids, std::span<const std::uint32_t> order,

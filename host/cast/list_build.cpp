@@ -68,8 +68,8 @@ std::size_t mostInRound(std::size_t solids) {
 /// A round's solids are looked at a few at a time, then what is seen of them by patches, so that each of the threads writes
 /// what is its own, and none waits for another. Few solids are one round; of many those of later rounds are dropped at once
 /// where the earlier hide them.
-void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds,
-                       Footprints& footprints) {
+void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& packs, const DepthSlices& slices,
+                       Rounds& rounds, Footprints& footprints) {
   const Solids& solids = packs.world.solids;
   Part& part = *parts_[thread];
   Sieve sieve(solids, footprints);
@@ -82,7 +82,7 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
     to = roundEnd(from, solids.size());
     part.newWides = part.wides.size();
     for (std::size_t at; (at = rounds.solid.fetch_add(few)) < to;)
-      part.lookForSieve(solids, at, std::min(at + few, to), footprints, from == 0 ? nullptr : &tileLimits_,
+      part.lookForSieve(solids, at, std::min(at + few, to), footprints, slices, from == 0 ? nullptr : &tileLimits_,
                         discs_.get() + (at - from));
     rounds.together.wait();
     for (std::size_t i = rounds.next++; i < before + patches_.size(); i = rounds.next++) {
@@ -93,12 +93,14 @@ void ListBuilder::sift(std::size_t thread, std::size_t threads, const Packs& pac
         patch.kept.clear();
         patch.depths.start(grid_.wideArea(x, y), grid_.region.width, grid_.region.height);
       }
-      for (std::size_t t = 0; t < threads; ++t) {
-        narrowOnes[t] = &parts_[t]->seenIn[at];
-        wideOnes[t] = std::span(parts_[t]->wides).subspan(parts_[t]->newWides);
+      for (std::size_t t = 0; t < threads; ++t) wideOnes[t] = std::span(parts_[t]->wides).subspan(parts_[t]->newWides);
+      for (std::size_t slice = 0; slice < DepthSlices::count; ++slice) {
+        const std::size_t bin = slice * patches_.size() + at;
+        for (std::size_t t = 0; t < threads; ++t) narrowOnes[t] = &parts_[t]->seenIn[bin];
+        if (slices.from[slice] <= patch.depths.deepest())
+          sieve.sift(patch, narrowOnes, wideOnes, slices, slice, {discs_.get(), from});
+        for (std::size_t t = 0; t < threads; ++t) parts_[t]->seenIn[bin].clear();
       }
-      sieve.sift(patch, narrowOnes, wideOnes, {discs_.get(), from});
-      for (std::size_t t = 0; t < threads; ++t) parts_[t]->seenIn[at].clear();
       note(at);
       if (to < solids.size()) continue;
       sieve.siftKept(patch);
@@ -141,6 +143,7 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
   if (const std::size_t most = hiding ? mostInRound(solids) : 0; most > discRoom_)
     discs_ = std::make_unique_for_overwrite<SmallDisc[]>(most), discRoom_ = most;
   const Packs packs{world, type, eyeForms, eye};
+  const DepthSlices slices = slicesOf(sample);
   Rounds rounds(threads);
   std::optional<ListRoom> to;
   std::exception_ptr failure;
@@ -149,7 +152,7 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
     Part& part = *parts_[t];
     for (std::size_t k = t; k < parts_.size(); k += threads) parts_[k]->start(grid_);
     auto own = footprints();
-    if (hiding) sift(t, threads, packs, rounds, own);
+    if (hiding) sift(t, threads, packs, slices, rounds, own);
     else part.look(solids * t / threads, solids * (t + 1) / threads, own, tileLimits_, packs);
     const auto wideTile = [&](int pixel) { return static_cast<std::uint32_t>(pixel / (grid_.wide * ListGrid::tile)); };
     std::erase_if(part.wides, [&](const ListHead& head) {

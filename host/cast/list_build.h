@@ -81,7 +81,8 @@ class ListBuilder {
  private:
   struct Rounds;
   /// A thread's part of finding what is not hidden, in rounds of all threads.
-  void sift(std::size_t thread, std::size_t threads, const Packs& packs, Rounds& rounds, Footprints& footprints);
+  void sift(std::size_t thread, std::size_t threads, const Packs& packs, const DepthSlices& slices, Rounds& rounds,
+            Footprints& footprints);
   void note(std::size_t patch);
   void sumUp();
   void layOut();

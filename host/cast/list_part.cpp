@@ -106,7 +106,7 @@ void ListBuilder::Part::start(const ListGrid& grid) {
   grid_ = grid;
   grazing = farSphere = boxOnFace = false;
   listed.clear();
-  seenIn.resize(std::size_t{1} * grid.wideAcross() * grid.wideDown());
+  seenIn.resize(DepthSlices::count * static_cast<std::size_t>(grid.wideAcross() * grid.wideDown()));
   for (auto& of : seenIn) of.clear();
   wides.clear();
   newWides = 0;
@@ -128,9 +128,10 @@ void forEachBlock(const Solids& solids, std::size_t from, std::size_t to, auto&&
 }  // namespace
 
 void ListBuilder::Part::lookForSieve(const Solids& solids, std::size_t from, std::size_t to, Footprints& footprints,
-                                     const TileLimits* limits, SmallDisc* discs) {
+                                     const DepthSlices& slices, const TileLimits* limits, SmallDisc* discs) {
   const int shift = std::countr_zero(static_cast<std::uint32_t>(grid_.wide * ListGrid::tile));
-  const std::int32_t across = grid_.wideAcross();
+  const std::int32_t across = grid_.wideAcross(), tiles = across * grid_.wideDown();
+  const Bins where{shift, across, tiles, slices};
   std::vector<SeenWithin>* const bins = seenIn.data();
   Routes r;
   forEachBlock(solids, from, to, [&](const Stretch& block) {
@@ -138,13 +139,14 @@ void ListBuilder::Part::lookForSieve(const Solids& solids, std::size_t from, std
       if (!f.seen()) return;
       const std::uint32_t solid = block.first + static_cast<std::uint32_t>(i);
       if (levelOf(f, grid_) == wide) return wides.push_back({f, solid});
+      std::vector<SeenWithin>* const slice = bins + slices.of(f.nearest) * static_cast<std::size_t>(tiles);
       for (std::int32_t y = f.y0 >> shift; y <= f.y1 >> shift; ++y)
         for (std::int32_t x = f.x0 >> shift; x <= f.x1 >> shift; ++x) {
-          bins[y * across + x].push_back(within(f, solid, grid_.wideArea(x, y)));
+          slice[y * across + x].push_back(within(f, solid, grid_.wideArea(x, y)));
         }
     };
     const auto batch = [&](const auto& b) {
-      route(b, shift, across, r);
+      route(b, where, r);
       if constexpr (requires { b.disc; })
         for (std::size_t i = 0; i < b.count; ++i) discs[block.first - from + b.at[i]].bits = b.disc[i];
       for (std::size_t i = 0; i < b.count; ++i) {

@@ -52,7 +52,7 @@ struct ListBuilder::Packs {
 };
 
 struct ListBuilder::Part {
-  // Where hidden solids are looked for: of a round's solids what is seen, by the wide tile.
+  // Where hidden solids are looked for: of a round's solids what is seen, by slice and wide tile.
   std::vector<std::vector<SeenWithin>> seenIn;
   std::vector<ListHead> wides;  // that are listed in wide tiles
   std::size_t newWides = 0;     // the first of the round
@@ -67,7 +67,7 @@ struct ListBuilder::Part {
   void look(std::size_t from, std::size_t to, Footprints& footprints, const TileLimits& limits, const Packs& packs);
   /// Where each is seen; to seenIn, but for the wide ones, and without those that `limits` hide. `discs`: of the spheres, from `from` on.
   void lookForSieve(const Solids& solids, std::size_t from, std::size_t to, Footprints& footprints,
-                    const TileLimits* limits, SmallDisc* discs);
+                    const DepthSlices& slices, const TileLimits* limits, SmallDisc* discs);
   /// Room for a solid's record of so many bytes, noted in those of its tiles that may see it by `limits`.
   std::byte* add(std::size_t kind, std::size_t bytes, const ListHead& head, ListLevel level, const TileLimits& limits);
   /// Copies every record to its tiles; tiles[][] says where each tile's next one goes.

@@ -1,5 +1,7 @@
 #include "host/cast/list_routes.h"
 
+#include <array>
+
 #include "host/cast/wide.h"
 
 namespace solidcast {
@@ -14,7 +16,11 @@ inline std::uint32_t coversOf(const Footprints::Spheres& batch, std::size_t i) {
 }
 
 template <class Batch>
-inline __attribute__((always_inline)) void routesOf(const Batch& b, int shift, std::int32_t across, Routes& r) {
+inline __attribute__((always_inline)) void routesOf(const Batch& b, const Bins& bins, Routes& r) {
+  const int shift = bins.shift;
+  const std::int32_t across = bins.across, tiles = bins.tiles;
+  std::array<std::int32_t, DepthSlices::count> from{};
+  for (std::size_t k = 1; k < from.size(); ++k) from[k] = bins.slices.from[k];
   const std::int32_t inside = (1 << shift) - 1;
   for (std::size_t i = 0, count = b.count; i < count; ++i) {
     const std::int32_t x0 = b.x0[i], y0 = b.y0[i], x1 = b.x1[i], y1 = b.y1[i];
@@ -27,24 +33,19 @@ inline __attribute__((always_inline)) void routesOf(const Batch& b, int shift, s
     r.last[i] = static_cast<std::uint32_t>(lastY << 16 | lastX);
     r.end[i] = static_cast<std::uint32_t>((y1 & inside) << 16 | (x1 & inside));
     r.more[i] = coversOf(b, i) | static_cast<std::uint32_t>(b.misses[i] << 16 | b.nearest[i]);
-    r.patch[i] = simple ? py * across + px : Routes::none;
+    std::int32_t bin = py * across + px;
+#pragma GCC unroll 8
+    for (std::size_t k = 1; k < from.size(); ++k) bin += b.nearest[i] >= from[k] ? tiles : 0;
+    r.patch[i] = simple ? bin : Routes::none;
     r.beyond[i] = static_cast<std::uint32_t>(moreX | moreY << 1);
   }
 }
 
 }  // namespace
 
-WIDE void route(const Footprints::Spheres& batch, int shift, std::int32_t across, Routes& routes) {
-  routesOf(batch, shift, across, routes);
-}
-WIDE void route(const Footprints::Triangles& batch, int shift, std::int32_t across, Routes& routes) {
-  routesOf(batch, shift, across, routes);
-}
-WIDE void route(const Footprints::Quads& batch, int shift, std::int32_t across, Routes& routes) {
-  routesOf(batch, shift, across, routes);
-}
-WIDE void route(const Footprints::Boxes& batch, int shift, std::int32_t across, Routes& routes) {
-  routesOf(batch, shift, across, routes);
-}
+WIDE void route(const Footprints::Spheres& batch, const Bins& bins, Routes& routes) { routesOf(batch, bins, routes); }
+WIDE void route(const Footprints::Triangles& batch, const Bins& bins, Routes& routes) { routesOf(batch, bins, routes); }
+WIDE void route(const Footprints::Quads& batch, const Bins& bins, Routes& routes) { routesOf(batch, bins, routes); }
+WIDE void route(const Footprints::Boxes& batch, const Bins& bins, Routes& routes) { routesOf(batch, bins, routes); }
 
 }  // namespace solidcast

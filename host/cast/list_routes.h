@@ -1,14 +1,21 @@
 // Which wide tiles' bins a batch's solids go to, and what is seen of them there, by vectors.
 #pragma once
-#include "host/cast/depth_bounds.h"
+#include "host/cast/list_sieve.h"
 
 namespace solidcast {
+
+/// Bins of wide tiles of 2^shift pixels a side, `across` in a row; `tiles` of them for each slice of depths.
+struct Bins {
+  int shift;
+  std::int32_t across, tiles;
+  DepthSlices slices;
+};
 
 struct Routes {
   static constexpr std::int32_t none = -1;
   static constexpr std::uint32_t right = 1, below = 2;
 
-  // The first wide tile; `none`: in more than 2x2, or not plain, or not seen. And whether it is in the next one as well.
+  // The first wide tile's bin; `none`: in more than 2x2, or not plain, or not seen. And whether it is in the next one as well.
   alignas(64) std::int32_t patch[Footprints::block];
   alignas(64) std::uint32_t beyond[Footprints::block];
   // Of SeenWithin: in the first wide tile; and the last pixel in the last wide tile.
@@ -31,10 +38,9 @@ struct Routes {
   }
 };
 
-/// Wide tiles have 2^shift pixels a side, and `across` are in a row.
-void route(const Footprints::Spheres& batch, int shift, std::int32_t across, Routes& routes);
-void route(const Footprints::Triangles& batch, int shift, std::int32_t across, Routes& routes);
-void route(const Footprints::Quads& batch, int shift, std::int32_t across, Routes& routes);
-void route(const Footprints::Boxes& batch, int shift, std::int32_t across, Routes& routes);
+void route(const Footprints::Spheres& batch, const Bins& bins, Routes& routes);
+void route(const Footprints::Triangles& batch, const Bins& bins, Routes& routes);
+void route(const Footprints::Quads& batch, const Bins& bins, Routes& routes);
+void route(const Footprints::Boxes& batch, const Bins& bins, Routes& routes);
 
 }  // namespace solidcast

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 
 #include "host/cast/wide.h"
 
@@ -14,13 +13,23 @@ bool overlap(const Footprint& f, const Crop& area) {
   return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
 }
 
-WIDE std::array<int, 2> nearestOf(std::span<const SeenWithin> solids) {
-  std::uint32_t least = DepthScale::none, most = 0;
+constexpr auto nearestOf = [](const SeenWithin& s) { return s.more & 0xffff; };
+constexpr auto solidOf = [](const SeenWithin& s) { return s.solid; };
+
+inline __attribute__((always_inline)) std::array<std::uint32_t, 2> range(std::span<const SeenWithin> solids,
+                                                                         auto&& key) {
+  std::uint32_t least = ~0u, most = 0;
   for (const SeenWithin& s : solids) {
-    const std::uint32_t nearest = s.more & 0xffff;
-    least = nearest < least ? nearest : least, most = nearest > most ? nearest : most;
+    const std::uint32_t k = key(s);
+    least = k < least ? k : least, most = k > most ? k : most;
   }
-  return {static_cast<int>(least), static_cast<int>(most)};
+  return {least, most};
+}
+WIDE std::array<std::uint32_t, 2> rangeOf(std::span<const SeenWithin> solids, decltype(nearestOf)) {
+  return range(solids, nearestOf);
+}
+WIDE std::array<std::uint32_t, 2> rangeOf(std::span<const SeenWithin> solids, decltype(solidOf)) {
+  return range(solids, solidOf);
 }
 
 }  // namespace
@@ -64,33 +73,41 @@ double partLeft(const ListSample& sample, const Crop& region, RealType type) {
   return listing * (1 - left) > looking ? left : 1;
 }
 
-void Sieve::sort(std::span<const std::vector<SeenWithin>* const> narrow) {
-  all_.clear();
-  for (const auto* solids : narrow) all_.insert(all_.end(), solids->begin(), solids->end());
-  all_.insert(all_.end(), wides_.begin(), wides_.end());
-  const auto [least, most] = nearestOf(all_);
+DepthSlices slicesOf(const ListSample& sample) {
+  DepthSlices slices;
+  std::vector<DepthCode> begins;
+  for (std::size_t i = 0; i < sample.all.size(); i += 4) begins.push_back(sample.all[i].seen.nearest);
+  std::ranges::sort(begins);
+  constexpr std::size_t count = DepthSlices::count;
+  for (std::size_t i = 1; i < count && !begins.empty(); ++i) slices.from[i] = begins[begins.size() * i / count];
+  return slices;
+}
+
+void Sieve::sort(std::span<const SeenWithin> solids, auto&& key) {
+  const auto [least, most] = rangeOf(solids, key);
   least_ = least;
-  const auto bits = static_cast<int>(std::bit_width(static_cast<unsigned>(most - least)));
-  shift_ = std::max(0, bits - std::countr_zero(buckets));
+  shift_ = std::max(0, static_cast<int>(std::bit_width(most - least)) - std::countr_zero(buckets));
   start_.fill(0);
-  for (const SeenWithin& s : all_) ++start_[static_cast<std::size_t>((s.nearest() - least_) >> shift_) + 1];
+  for (const SeenWithin& s : solids) ++start_[((key(s) - least) >> shift_) + 1];
   for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
-  order_.resize(all_.size());
-  for (std::uint32_t i = 0; i < all_.size(); ++i)
-    order_[start_[static_cast<std::size_t>((all_[i].nearest() - least_) >> shift_)]++] = i;
+  order_.resize(solids.size());
+  for (std::uint32_t i = 0; i < solids.size(); ++i) order_[start_[(key(solids[i]) - least) >> shift_]++] = i;
 }
 
 void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* const> narrow,
-                 std::span<const std::span<const ListHead>> wides, const SmallDiscs& discs) {
+                 std::span<const std::span<const ListHead>> wides, const DepthSlices& slices, std::size_t slice,
+                 const SmallDiscs& discs) {
   DepthBounds& depths = patch.depths;
-  wides_.clear();
+  all_.clear();
+  for (const auto* solids : narrow) depths.addNotBehind(*solids, all_);
+  const std::size_t narrowOnes = all_.size();
   for (const auto& heads : wides)
     for (const ListHead& head : heads)
-      if (head.seen.hides != DepthScale::none && overlap(head.seen, depths.area()))
-        wides_.push_back(within(head.seen, head.solid, depths.area()));
-  sort(narrow);
+      if (head.seen.hides != DepthScale::none && slices.of(head.seen.nearest) == slice &&
+          overlap(head.seen, depths.area()))
+        all_.push_back(within(head.seen, head.solid, depths.area()));
   if (all_.empty()) return;
-  kept_.assign(all_.size() / 64 + 1, 0);
+  sort(all_, nearestOf);
   constexpr std::size_t together = Footprints::block;
   std::array<std::uint32_t, 4 * together> places, round;
   std::array<ShapeRef, together> shapes;
@@ -108,7 +125,7 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
     };
     for (const std::uint32_t at : std::span(places).first(seen)) {
       const SeenWithin& s = all_[at];
-      kept_[at / 64] |= std::uint64_t{1} << at % 64;
+      if (at < narrowOnes) patch.kept.push_back(s);
       if (s.isDisc()) {
         round[rounds++] = at;
         __builtin_prefetch(discs.of + (s.solid - discs.first));
@@ -122,32 +139,20 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
     addShapes();
     depths.noteTiles();
   }
-  std::size_t first = 0, list = 0, own = patch.kept.size();
-  const auto begin = static_cast<std::ptrdiff_t>(own);
-  const auto merge = [&] {
-    const auto at = [&](std::size_t place) { return patch.kept.begin() + static_cast<std::ptrdiff_t>(place); };
-    std::inplace_merge(patch.kept.begin() + begin, at(own), patch.kept.end(),
-                       [](const SeenWithin& a, const SeenWithin& b) { return a.solid < b.solid; });
-    own = patch.kept.size();
-  };
-  for (std::size_t word = 0; word < kept_.size(); ++word)
-    for (std::uint64_t bits = kept_[word]; bits != 0; bits &= bits - 1) {
-      const std::size_t place = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
-      while (list < narrow.size() && place - first >= narrow[list]->size()) first += narrow[list++]->size(), merge();
-      if (list == narrow.size()) return;  // the rest are wide ones
-      patch.kept.push_back(all_[place]);
-    }
-  merge();
 }
 
 void Sieve::siftKept(ListPatch& patch) {
-  places_.resize(patch.kept.size());
-  order_.resize(patch.kept.size());
-  std::iota(order_.begin(), order_.end(), 0);
+  if (patch.kept.empty()) return;
+  sort(patch.kept, solidOf);
+  for (std::size_t i = 1; i < order_.size(); ++i)  // within the buckets
+    for (std::size_t k = i; k > 0 && patch.kept[order_[k]].solid < patch.kept[order_[k - 1]].solid; --k)
+      std::swap(order_[k], order_[k - 1]);
+  places_.resize(order_.size());
   std::size_t looked = 0;
   const std::size_t seen = patch.depths.visible(patch.kept, order_, order_.size() + 1, places_, looked);
-  for (std::size_t i = 0; i < seen; ++i) patch.kept[i] = patch.kept[places_[i]];
-  patch.kept.resize(seen);
+  all_.clear();
+  for (const std::uint32_t at : std::span(places_).first(seen)) all_.push_back(patch.kept[at]);
+  patch.kept.swap(all_);
 }
 
 }  // namespace solidcast

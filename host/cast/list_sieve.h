@@ -42,27 +42,42 @@ struct ListSample {
 /// The part of the solids that is left where looking for what is hidden pays, about; 1: it does not.
 double partLeft(const ListSample& sample, const Crop& region, RealType type);
 
+/// Of depths where solids begin: a few slices with about as many solids each, nearest first. Those of a slice are gone through
+/// together, and what the slices before hide of them is dropped before it is sorted.
+struct DepthSlices {
+  static constexpr std::size_t count = 3;
+  std::array<DepthCode, count> from{};  // 0 for the first
+  std::size_t of(DepthCode nearest) const {
+    std::size_t slice = 0;
+    for (std::size_t i = 1; i < count; ++i) slice += nearest >= from[i];
+    return slice;
+  }
+};
+DepthSlices slicesOf(const ListSample& sample);
+
 /// A wide tile's part of the picture.
 struct ListPatch {
   DepthBounds depths;
-  std::vector<SeenWithin> kept;  // in the order of the solids
+  std::vector<SeenWithin> kept;
 };
 
 class Sieve {
  public:
   Sieve(const Solids& solids, Footprints& footprints) : solids_(solids), footprints_(footprints) {}
 
-  /// Adds to the patch, which has been started, what is not hidden of `narrow`, lists each in the order of the solids,
-  /// in which it is added. `wides` hide as well, where they are seen.
+  /// Adds to the patch, which has been started, what is not hidden of `narrow`: solids of one slice, after the slices before
+  /// it. `wides` hide as well, where they are seen.
   void sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* const> narrow,
-            std::span<const std::span<const ListHead>> wides, const SmallDiscs& discs);
-  /// Removes what has been hidden since it was kept.
+            std::span<const std::span<const ListHead>> wides, const DepthSlices& slices, std::size_t slice,
+            const SmallDiscs& discs);
+  /// Removes what has been hidden since it was kept; the others are then in the order of the solids.
   void siftKept(ListPatch& patch);
 
  private:
-  static constexpr std::size_t buckets = 512;
+  static constexpr std::size_t buckets = 128;
 
-  void sort(std::span<const std::vector<SeenWithin>* const> narrow);
+  /// order_ by key, about: by buckets of keys.
+  void sort(std::span<const SeenWithin> solids, auto&& key);
   /// Where the depths of its bucket begin.
   DepthCode bucketOf(DepthCode nearest) const {
     return static_cast<DepthCode>(least_ + ((nearest - least_) >> shift_ << shift_));
@@ -70,11 +85,10 @@ class Sieve {
 
   const Solids& solids_;
   Footprints& footprints_;
-  std::vector<SeenWithin> wides_;
-  std::vector<SeenWithin> all_;       // list by list, the wide ones last
-  std::vector<std::uint32_t> order_;  // places of these, by depths where they begin, about
-  int least_ = 0, shift_ = 0;         // of these depths: the first, and how many bits of their differences are left out
-  std::vector<std::uint64_t> kept_;   // bits by place
+  std::vector<SeenWithin> all_;       // the wide ones last
+  std::vector<std::uint32_t> order_;  // places of what was sorted
+  std::uint32_t least_ = 0;           // of its keys
+  int shift_ = 0;                     // how many bits of their differences are left out
   std::vector<std::uint32_t> places_;
   std::array<std::uint32_t, buckets + 1> start_;
 };

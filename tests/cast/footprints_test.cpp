@@ -172,18 +172,24 @@ TEST(SeenWithin, HasWhatIsSeenInItsPartOfThePicture) {
   EXPECT_GT(missed, 20);
 }
 
+/// Of solids on both sides of the middle depth, 30, whose code is 2^15.
+constexpr DepthSlices slices{{0, 32000, 33200}};
+
 /// Every wide tile's part of a solid is the one that `within` has of it.
 TEST(Routes, GoWhereTheSolidIsSeen) {
   Measured m;
   const std::vector<Shape> all = solids(400);
   constexpr int shift = 4, side = 1 << shift, across = (width + side - 1) / side;
+  constexpr std::size_t tiles = 1000;  // more than there are
+  const Bins bins{shift, across, tiles, slices};
   Routes routes;
   int whole = 0, split = 0, elsewhere = 0, discs = 0, missed = 0;
+  std::array<int, DepthSlices::count> ofSlice{};
   for (std::size_t first = 0; first + Footprints::block <= all.size(); first += Footprints::block) {
     std::vector<ShapeRef> shapes;
     for (std::size_t i = 0; i < Footprints::block; ++i) shapes.push_back(all[first + i]);
     const auto batch = [&](const auto& b) {
-      route(b, shift, across, routes);
+      route(b, bins, routes);
       for (std::size_t i = 0; i < b.count; ++i) {
         const Footprint f = m.footprints.of(b, i, shapes);
         const bool few = f.x1 / side - f.x0 / side < 2 && f.y1 / side - f.y0 / side < 2;
@@ -194,8 +200,11 @@ TEST(Routes, GoWhereTheSolidIsSeen) {
           continue;
         }
         std::map<std::size_t, SeenWithin> parts;
-        routes.forEach(i, 5, across,
-                       [&](std::size_t at, const SeenWithin& s) { EXPECT_TRUE(parts.emplace(at, s).second); });
+        routes.forEach(i, 5, across, [&](std::size_t at, const SeenWithin& s) {
+          EXPECT_EQ(at / tiles, slices.of(f.nearest));
+          EXPECT_TRUE(parts.emplace(at % tiles, s).second);
+        });
+        ++ofSlice[slices.of(f.nearest)];
         for (int y = f.y0 / side; y <= f.y1 / side; ++y)
           for (int x = f.x0 / side; x <= f.x1 / side; ++x) {
             ASSERT_TRUE(parts.contains(static_cast<std::size_t>(y * across + x)));
@@ -216,6 +225,7 @@ TEST(Routes, GoWhereTheSolidIsSeen) {
     m.footprints.findBatches(shapes, true, batch, [](std::size_t, const Footprint&) {});
   }
   for (const int count : {whole, split, elsewhere, discs, missed}) EXPECT_GT(count, 50);
+  for (const int count : ofSlice) EXPECT_GT(count, 50);
 }
 
 /// Of a crowd, half of it behind a wall: no pixel's nearest solid is dropped, and most of what is hidden is.
@@ -234,21 +244,28 @@ TEST(Sieve, KeepsWhatIsNearestInSomePixel) {
   for (const Crop& area : {Crop{0, 0, 64, 56}, Crop{16, 16, 32, 24}}) {
     ListPatch patch;
     patch.depths.start(area, width, height);
-    std::vector<SeenWithin> first, second;
+    std::array<std::vector<SeenWithin>, DepthSlices::count> first, second;
+    std::size_t given = 0;
     std::vector<ListHead> wide;
     std::vector<Footprint> seen;
     for (std::uint32_t i = 0; i < world.solids.size(); ++i) {
       const Footprint f = seen.emplace_back(m.seen(world.solids[i].shape));
       if (!f.seen() || !meet(f, area)) continue;
       if (i + 1 == world.solids.size() && area.x == 0) wide.push_back({f, i});
-      else (i / 32 % 2 ? first : second).push_back(within(f, i, area));  // as two threads take them
+      else {  // as two threads take them
+        (i / 32 % 2 ? first : second)[slices.of(f.nearest)].push_back(within(f, i, area));
+        ++given;
+      }
     }
     Sieve sieve(world.solids, m.footprints);
-    const std::vector<SeenWithin>* lists[] = {&first, &second};
     const std::span<const ListHead> wides[] = {wide};
-    sieve.sift(patch, lists, wides, {nullptr, 0});
+    for (std::size_t slice = 0; slice < DepthSlices::count; ++slice) {
+      EXPECT_GT(first[slice].size(), 5u);
+      const std::vector<SeenWithin>* lists[] = {&first[slice], &second[slice]};
+      sieve.sift(patch, lists, wides, slices, slice, {nullptr, 0});
+    }
     sieve.siftKept(patch);
-    EXPECT_LT(patch.kept.size(), (first.size() + second.size()) * 2 / 3);
+    EXPECT_LT(patch.kept.size(), given * 2 / 3);
     EXPECT_TRUE(std::is_sorted(patch.kept.begin(), patch.kept.end(),
                                [](const SeenWithin& a, const SeenWithin& b) { return a.solid < b.solid; }));
     int hits = 0;
