@@ -23,6 +23,7 @@ class TileLimits {
 
   /// Nothing hidden.
   void start(std::size_t across, std::size_t down);
+  std::size_t size() const { return across_ * down_; }
   DepthCode* row(std::size_t y) { return byTile_.data() + y * across_; }
   const DepthCode* row(std::size_t y) const { return byTile_.data() + y * across_; }
   /// Whether something that begins at `nearest` can be seen in some of the tiles, first and last.

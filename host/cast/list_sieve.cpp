@@ -9,10 +9,6 @@
 namespace solidcast {
 namespace {
 
-bool overlap(const Footprint& f, const Crop& area) {
-  return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
-}
-
 constexpr auto nearestOf = [](const SeenWithin& s) { return s.more & 0xffff; };
 constexpr auto solidOf = [](const SeenWithin& s) { return s.solid; };
 
@@ -33,6 +29,10 @@ WIDE std::array<std::uint32_t, 2> rangeOf(std::span<const SeenWithin> solids, de
 }
 
 }  // namespace
+
+bool overlap(const Footprint& f, const Crop& area) {
+  return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
+}
 
 ListSample::ListSample(const Solids& solids, Footprints& footprints) {
   const std::size_t step = solids.size() / 256 + 1;
@@ -86,8 +86,9 @@ DepthSlices slicesOf(const ListSample& sample) {
 void Sieve::sort(std::span<const SeenWithin> solids, auto&& key) {
   const auto [least, most] = rangeOf(solids, key);
   least_ = least;
-  shift_ = std::max(0, static_cast<int>(std::bit_width(most - least)) - std::countr_zero(buckets));
-  start_.fill(0);
+  const int bits = std::clamp(static_cast<int>(std::bit_width(solids.size())), 7, 12);  // as many buckets
+  shift_ = std::max(0, static_cast<int>(std::bit_width(most - least)) - bits);
+  start_.assign((std::size_t{1} << bits) + 1, 0);
   for (const SeenWithin& s : solids) ++start_[((key(s) - least) >> shift_) + 1];
   for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
   order_.resize(solids.size());
@@ -144,9 +145,10 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
 void Sieve::siftKept(ListPatch& patch) {
   if (patch.kept.empty()) return;
   sort(patch.kept, solidOf);
-  for (std::size_t i = 1; i < order_.size(); ++i)  // within the buckets
-    for (std::size_t k = i; k > 0 && patch.kept[order_[k]].solid < patch.kept[order_[k - 1]].solid; --k)
-      std::swap(order_[k], order_[k - 1]);
+  for (std::size_t bucket = 0, first = 0; first < order_.size(); first = start_[bucket++])
+    if (start_[bucket] > first + 1)
+      std::sort(order_.begin() + static_cast<std::ptrdiff_t>(first), order_.begin() + start_[bucket],
+                [&](std::uint32_t a, std::uint32_t b) { return patch.kept[a].solid < patch.kept[b].solid; });
   places_.resize(order_.size());
   std::size_t looked = 0;
   const std::size_t seen = patch.depths.visible(patch.kept, order_, order_.size() + 1, places_, looked);

@@ -27,6 +27,8 @@ struct ListHead {
   std::uint32_t solid;
 };
 
+bool overlap(const Footprint& f, const Crop& area);
+
 /// A few hundred solids from all over a scene, those of them that are seen.
 struct ListSample {
   ListSample(const Solids& solids, Footprints& footprints);
@@ -74,8 +76,6 @@ class Sieve {
   void siftKept(ListPatch& patch);
 
  private:
-  static constexpr std::size_t buckets = 128;
-
   /// order_ by key, about: by buckets of keys.
   void sort(std::span<const SeenWithin> solids, auto&& key);
   /// Where the depths of its bucket begin.
@@ -90,7 +90,7 @@ class Sieve {
   std::uint32_t least_ = 0;           // of its keys
   int shift_ = 0;                     // how many bits of their differences are left out
   std::vector<std::uint32_t> places_;
-  std::array<std::uint32_t, buckets + 1> start_;
+  std::vector<std::uint32_t> start_;  // of the buckets, then where they end
 };
 
 }  // namespace solidcast
