@@ -330,11 +330,10 @@ void DepthBounds::noteTiles() {
   tiles_.widen();
 }
 
-void DepthBounds::addNotBehind(std::span<const SeenWithin> solids, std::vector<SeenWithin>& to) const {
-  const std::size_t before = to.size();
-  if (deepest_ == DepthScale::none) return void(to.insert(to.end(), solids.begin(), solids.end()));
-  to.resize(before + solids.size());
-  to.resize(before + notBehind(tiles_, solids, to.data() + before));
+void DepthBounds::addNotBehind(std::span<const SeenWithin> solids, Pile<SeenWithin>& to) const {
+  SeenWithin* const end = to.room(solids.size());
+  if (deepest_ == DepthScale::none) std::ranges::copy(solids, end), to.take(solids.size());
+  else to.take(notBehind(tiles_, solids, end));
 }
 
 std::size_t DepthBounds::visible(std::span<const SeenWithin> solids, std::span<const std::uint32_t> order,

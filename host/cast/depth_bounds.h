@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "host/cast/footprints.h"
+#include "host/cast/pile.h"
 
 namespace solidcast {
 
@@ -98,7 +99,7 @@ class DepthBounds {
   std::size_t visible(std::span<const SeenWithin> solids, std::span<const std::uint32_t> order,
                       std::size_t mostCovering, std::span<std::uint32_t> places, std::size_t& looked) const;
   /// To the end of `to` those that do not lie behind the tiles' limits.
-  void addNotBehind(std::span<const SeenWithin> solids, std::vector<SeenWithin>& to) const;
+  void addNotBehind(std::span<const SeenWithin> solids, Pile<SeenWithin>& to) const;
   bool hides(const SeenWithin& seen) const {
     std::uint32_t place = 0;
     std::size_t looked = 0;

@@ -23,6 +23,9 @@ class ListBuilder {
   ListBuilder();
   ~ListBuilder();
 
+  /// collect() comes soon.
+  void prepare() { workers_.wake(); }
+
   /// Which solids are seen where, and their records: forms for the camera's one eye, correct to 2^-3 of the type's
   /// rounding (docs/numerics.md), or the solids themselves from the camera's centre, for rays that are free.
   /// `eye` is eyeFrame() of the scene, for forms of `type`, otherwise for f64.

@@ -1,15 +1,14 @@
 // From what is listed where to the rows and lanes that shaders/lists.comp reads. Each wide tile's lists are one thread's from
 // its solids to where its rows begin among its own; only where the wide tiles' rows begin is put together at the end.
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "host/cast/list_grid.h"
+#include "host/cast/pile.h"
 
 namespace solidcast {
 
@@ -17,30 +16,6 @@ namespace solidcast {
 struct ListEntry {
   const std::byte* record;
   std::uint32_t tile;
-};
-
-/// Things of which more are put at the end, without being cleared first.
-template <class T>
-class Pile {
- public:
-  /// Room for more at the end, of which so much is kept as is taken.
-  T* room(std::size_t count) {
-    if (used_ + count > room_) {
-      room_ = std::max<std::size_t>({2 * room_, used_ + count, 4096});
-      auto bigger = std::make_unique_for_overwrite<T[]>(room_);
-      if (used_ > 0) std::memcpy(bigger.get(), data_.get(), used_ * sizeof(T));
-      data_ = std::move(bigger);
-    }
-    return data_.get() + used_;
-  }
-  void take(std::size_t count) { used_ += count; }
-  void clear() { used_ = 0; }
-  std::size_t size() const { return used_; }
-  const T* data() const { return data_.get(); }
-
- private:
-  std::unique_ptr<T[]> data_;
-  std::size_t room_ = 0, used_ = 0;
 };
 
 /// Records, which stay where they are.

@@ -23,6 +23,12 @@ constexpr std::size_t stateBytes = 40 * 16;  // lists.comp: State, by tile, at m
 /// What is taken for a buffer of so many bytes, so that it serves the next scene too.
 std::size_t withRoom(std::size_t bytes) { return std::max<std::size_t>(bytes + bytes / 8, 64) / 16 * 16; }
 
+/// Into the buffer that is there, if it has that size.
+void fill(gpu::Device& device, gpu::Buffer& buffer, std::span<const std::byte> bytes, gpu::BufferUse use) {
+  if (buffer.bytes().size() == bytes.size()) std::ranges::copy(bytes, buffer.bytes().begin());
+  else buffer = filledBuffer(device, bytes, use);
+}
+
 /// Keeps the buffer while it is large enough; its contents are not kept.
 void reserve(gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, gpu::BufferUse use) {
   if (buffer.bytes().size() >= std::max<std::size_t>(bytes, 16)) return;
@@ -52,11 +58,12 @@ void ListSearch::setScene(const Scene& scene) {
   scene_ = &scene;
   builtRow_ = -1;
   Stopwatch flattening;
+  builder_.prepare();
   silhouette_.emplace(scene, job_.job.width, job_.job.height, job_.job.samples);
   eye_ = eyeFrame(scene, program_.eye() ? program_.real : RealType::f64);
   const View view = viewRows(scene, eye_, job_.job.width, job_.job.height, job_.samples, program_.real);
-  view_ = filledBuffer(job_.device, view.rows, gpu::BufferUse::uniform);
-  if (program_.camera == 1) angles_ = filledBuffer(job_.device, view.angles, gpu::BufferUse::storage);
+  fill(job_.device, view_, view.rows, gpu::BufferUse::uniform);
+  if (program_.camera == 1) fill(job_.device, angles_, view.angles, gpu::BufferUse::storage);
   viewRaws_ = static_cast<std::uint32_t>(view.raws);
   job_.stats.flatten_ms += flattening.ms();
 }

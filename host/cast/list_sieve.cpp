@@ -86,7 +86,7 @@ DepthSlices slicesOf(const ListSample& sample) {
 void Sieve::sort(std::span<const SeenWithin> solids, auto&& key) {
   const auto [least, most] = rangeOf(solids, key);
   least_ = least;
-  const int bits = std::clamp(static_cast<int>(std::bit_width(solids.size())), 7, 12);  // as many buckets
+  const int bits = std::clamp(static_cast<int>(std::bit_width(solids.size())) - 1, 6, 12);  // as many buckets
   shift_ = std::max(0, static_cast<int>(std::bit_width(most - least)) - bits);
   start_.assign((std::size_t{1} << bits) + 1, 0);
   for (const SeenWithin& s : solids) ++start_[((key(s) - least) >> shift_) + 1];
@@ -106,8 +106,8 @@ void Sieve::sift(ListPatch& patch, std::span<const std::vector<SeenWithin>* cons
     for (const ListHead& head : heads)
       if (head.seen.hides != DepthScale::none && slices.of(head.seen.nearest) == slice &&
           overlap(head.seen, depths.area()))
-        all_.push_back(within(head.seen, head.solid, depths.area()));
-  if (all_.empty()) return;
+        all_.add(within(head.seen, head.solid, depths.area()));
+  if (all_.size() == 0) return;
   sort(all_, nearestOf);
   constexpr std::size_t together = Footprints::block;
   std::array<std::uint32_t, 4 * together> places, round;
@@ -153,8 +153,8 @@ void Sieve::siftKept(ListPatch& patch) {
   std::size_t looked = 0;
   const std::size_t seen = patch.depths.visible(patch.kept, order_, order_.size() + 1, places_, looked);
   all_.clear();
-  for (const std::uint32_t at : std::span(places_).first(seen)) all_.push_back(patch.kept[at]);
-  patch.kept.swap(all_);
+  for (const std::uint32_t at : std::span(places_).first(seen)) all_.add(patch.kept[at]);
+  patch.kept.assign(all_.data(), all_.data() + seen);
 }
 
 }  // namespace solidcast

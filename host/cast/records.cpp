@@ -149,10 +149,10 @@ EyeFrame eyeFrame(const Scene& scene, RealType type) {
       },
       scene.camera);
   if (type == RealType::f64) return eye;
-  // The median distance of a few hundred solids from all over the scene: any unit near it serves.
+  // The median distance of a hundred solids from all over the scene: any unit near it serves.
   std::vector<double> scales;
   const Triple origin{double(eye.origin.x), double(eye.origin.y), double(eye.origin.z)};
-  const std::size_t solids = scene.world.solids.size(), step = solids / 512 + 1;
+  const std::size_t solids = scene.world.solids.size(), step = solids / 128 + 1;
   for (std::size_t i = 0; i < solids; i += step) {
     const double scale =
         scene.world.solids.shape(i).visit([&](const auto& s) { return distance(ball(s).center, origin); });

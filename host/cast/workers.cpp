@@ -56,18 +56,28 @@ void Workers::run(int count, const std::function<void(int)>& work) {
   end_.wait(lock, [this] { return busy_ == 0; });
 }
 
+void Workers::wake() {
+  {
+    const std::lock_guard lock(mutex_);
+    ++called_;
+  }
+  start_.notify_all();
+}
+
 void Workers::take() {
   for (int i = next_++; i < count_; i = next_++) (*work_)(i);
 }
 
 void Workers::help() {
-  for (int seen = 0;;) {
+  for (int seen = 0, heard = 0;;) {
     {
       std::unique_lock lock(mutex_);
-      start_.wait(lock, [&] { return over_ || round_ != seen; });
+      start_.wait(lock, [&] { return over_ || round_ != seen || called_ != heard; });
       if (over_) return;
-      seen = round_;
+      heard = called_;
     }
+    if (!soon([&] { return round_ != seen; })) continue;
+    seen = round_;
     take();
     if (--busy_ > 0) continue;
     const std::lock_guard lock(mutex_);

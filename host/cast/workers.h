@@ -32,6 +32,8 @@ class Workers {
   /// work(i) for all i below `count`, on all threads, the caller's among them. `work` must not throw. Up to threads() pieces
   /// are under way at the same time, so that they may wait for each other.
   void run(int count, const std::function<void(int)>& work);
+  /// run() is called soon: the others wake meanwhile.
+  void wake();
   unsigned threads() const { return static_cast<unsigned>(helpers_.size()) + 1; }
 
  private:
@@ -43,7 +45,8 @@ class Workers {
   const std::function<void(int)>* work_ = nullptr;
   std::atomic<int> next_ = 0;
   std::atomic<int> busy_ = 0;
-  int count_ = 0, round_ = 0;
+  std::atomic<int> round_ = 0;
+  int count_ = 0, called_ = 0;
   bool over_ = false;
   std::vector<std::thread> helpers_;
 };
