@@ -63,8 +63,8 @@ class ListPacking {
     if (!packs_.eyeForms || packs_.type != RealType::f32) return alone(solid, head);
     if (!many) many.emplace(kindNumber(solid));
     many->heads[many->records.size()] = head;
-    if (!many->records.add(solid, head.solid, packs_.eye.plain)) flush(many), alone(solid, head);
-    else if (many->records.full()) flush(many);
+    many->records.add(solid, head.solid);
+    if (many->records.full()) flush(many);
   }
 
   void flush(std::optional<Many>& many) {

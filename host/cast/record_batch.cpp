@@ -26,7 +26,10 @@ __attribute__((flatten)) WIDE void packSpheres(const Frame<double>& eye, const R
                                                Flags& grazing) {
   for (std::size_t i = 0; i < count; ++i) {
     EyeRecord<double> record(RealType::f32);
-    sphereForms(triple(n, 0, i), n.v[3][i], eye, n.index[i], record);
+    const Vec3<double> f = -eye.relative(triple(n, 0, i));
+    const double r = n.v[3][i] / eye.unit, far = dot(f, f);
+    sphereForms(f, r, eye, n.index[i], record);
+    record.poor |= nearSurface(far, far - r * r, RealType::f32);
     store<2>(record, i, rows, poor, grazing);
   }
 }
@@ -52,21 +55,6 @@ __attribute__((flatten)) WIDE void packQuads(const Frame<double>& eye, const Rec
 }
 
 }  // namespace
-
-bool RecordBatch::add(const Sphere& sphere, std::uint32_t index, const Frame<double>& eye) {
-  const Vec3<double> f = -eye.relative(sphere.center);
-  const double r = sphere.radius / eye.unit, far = dot(f, f);
-  if (nearSurface(far, far - r * r, RealType::f32)) return false;
-  put(0, f);
-  numbers_.v[3][count_] = r, numbers_.index[count_++] = index;
-  return true;
-}
-
-bool RecordBatch::add(const Span<double>& span, std::uint32_t index) {
-  put(0, span.v1), put(3, span.e1), put(6, span.e2);
-  numbers_.index[count_++] = index;
-  return true;
-}
 
 std::size_t RecordBatch::pack(const Frame<double>& eye) {
   const auto of = kind_ == kinds::sphere ? packSpheres : kind_ == kinds::triangle ? packTriangles : packQuads;

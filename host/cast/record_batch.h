@@ -18,16 +18,18 @@ class RecordBatch {
   int kind() const { return kind_; }
   std::size_t size() const { return count_; }
   bool full() const { return count_ == block; }
-  /// `index`: of the solid in the world. False: it is to be packed alone (a sphere with the eye near its surface).
-  bool add(const Sphere& sphere, std::uint32_t index, const Frame<double>& eye);
-  bool add(const Triangle& triangle, std::uint32_t index, const Frame<double>&) {
-    return add(span<double>(triangle), index);
+  /// `index`: of the solid in the world.
+  void add(const Sphere& sphere, std::uint32_t index) {
+    put(0, Vec3<double>(sphere.center));
+    numbers_.v[3][count_] = sphere.radius, numbers_.index[count_++] = index;
   }
-  bool add(const Quad& quad, std::uint32_t index, const Frame<double>&) { return add(span<double>(quad), index); }
+  void add(const Triangle& triangle, std::uint32_t index) { add(span<double>(triangle), index); }
+  void add(const Quad& quad, std::uint32_t index) { add(span<double>(quad), index); }
 
   /// Calculates the records of all that were added since the last time, and forgets them; the count of them.
   std::size_t pack(const Frame<double>& eye);
-  /// Of the i-th, in the order that they were added. Poor (EyeRecord::poor): fp64 does not serve, to be packed alone.
+  /// Of the i-th, in the order that they were added. Poor: fp64 does not serve (EyeRecord::poor), or the record is of another kind
+  /// (a sphere with the eye near its surface); to be packed alone.
   bool poor(std::size_t i) const { return poor_[i] != 0; }
   bool grazing(std::size_t i) const { return grazing_[i] != 0; }
   /// The numbers of its rows, one after the other.
@@ -42,7 +44,10 @@ class RecordBatch {
   using Rows = float[20][block];
 
  private:
-  bool add(const Span<double>& span, std::uint32_t index);
+  void add(const Span<double>& span, std::uint32_t index) {
+    put(0, span.v1), put(3, span.e1), put(6, span.e2);
+    numbers_.index[count_++] = index;
+  }
   void put(std::size_t first, const Vec3<double>& v) {
     for (std::size_t k = 0; k < 3; ++k) numbers_.v[first + k][count_] = v[static_cast<int>(k)];
   }

@@ -80,7 +80,8 @@ struct Frame {
       : origin(f.origin), right(f.right), upward(f.upward), backward(f.backward), unit(static_cast<T>(f.unit)) {}
 
   Vec3<T> toCamera(Vec3<T> world) const { return {dot(world, right), dot(world, upward), dot(world, backward)}; }
-  Vec3<T> relative(const Triple& point) const { return (Vec3<T>(point) - origin) * (1 / unit); }
+  Vec3<T> relative(const Vec3<T>& point) const { return (point - origin) * (1 / unit); }
+  Vec3<T> relative(const Triple& point) const { return relative(Vec3<T>(point)); }
 };
 using EyeFrame = Frame<f128>;
 
