@@ -170,7 +170,6 @@ void ListSearch::fillUnlisted(const PassTarget& target) const {
 }
 
 double ListSearch::dispatch(const PassTarget& target, const Band& band, int sample) {
-  if (sample == 0) fillUnlisted(target);
   const int n = job_.samples;
   std::vector<ListPush> pushes;
   const auto texels = static_cast<std::uint32_t>(1 + std::count(kinds_.begin(), kinds_.end(), true));
@@ -186,7 +185,12 @@ double ListSearch::dispatch(const PassTarget& target, const Band& band, int samp
                           bound,
                           std::as_bytes(std::span(&push, 1)),
                           {static_cast<std::uint32_t>(lanes_) / groupLanes, 1, 1}});
-  return lanes_ == 0 ? 0 : job_.device.run(dispatches);
+  const auto fill = [&] {
+    if (sample == 0) fillUnlisted(target);
+  };
+  if (lanes_ > 0) return job_.device.run(dispatches, fill);
+  fill();
+  return 0;
 }
 
 }  // namespace solidcast

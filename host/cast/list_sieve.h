@@ -85,7 +85,7 @@ class Sieve {
 
   const Solids& solids_;
   Footprints& footprints_;
-  Pile<SeenWithin> all_;       // the wide ones last
+  Pile<SeenWithin> all_;              // the wide ones last
   std::vector<std::uint32_t> order_;  // places of what was sorted
   std::uint32_t least_ = 0;           // of its keys
   int shift_ = 0;                     // how many bits of their differences are left out

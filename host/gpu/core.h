@@ -56,7 +56,7 @@ struct Pipeline::Impl {
 class Runner {
  public:
   explicit Runner(std::shared_ptr<Core> core);
-  double run(std::span<const Dispatch> dispatches);
+  double run(std::span<const Dispatch> dispatches, const std::function<void()>& meanwhile);
 
  private:
   struct Bound {

@@ -95,7 +95,9 @@ std::uint64_t Device::bytesAllocated() const { return impl_->core->bytesAllocate
 std::uint64_t Device::peakBytes() const { return impl_->core->peakBytes; }
 double Device::instanceMilliseconds() const { return impl_->core->instance.milliseconds(); }
 double Device::deviceMilliseconds() const { return impl_->core->milliseconds; }
-double Device::run(std::span<const Dispatch> dispatches) { return impl_->runner.run(dispatches); }
+double Device::run(std::span<const Dispatch> dispatches, const std::function<void()>& meanwhile) {
+  return impl_->runner.run(dispatches, meanwhile);
+}
 
 // --- buffers --------------------------------------------------------------------------------------
 

@@ -123,7 +123,8 @@ class Device {
   /// shader's block (a host struct's padding), never shorter. Not for several threads at once.
   /// Throws Exit::shader where buffers or push constants do not fit the shader, Exit::usage (with both numbers) for
   /// more groups than the device allows.
-  double run(std::span<const Dispatch> dispatches);
+  /// `meanwhile` is called when they have been submitted; it must not touch what they write.
+  double run(std::span<const Dispatch> dispatches, const std::function<void()>& meanwhile = {});
 
   double instanceMilliseconds() const;
   double deviceMilliseconds() const;

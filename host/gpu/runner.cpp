@@ -176,7 +176,7 @@ void Runner::record(std::span<const Dispatch> dispatches, std::span<const Bound>
   check(c.vkEndCommandBuffer(commands_), "record commands");
 }
 
-double Runner::run(std::span<const Dispatch> dispatches) {
+double Runner::run(std::span<const Dispatch> dispatches, const std::function<void()>& meanwhile) {
   const Core& c = *core_;
   std::vector<Bound> bound;
   std::size_t buffers = 0;
@@ -192,6 +192,7 @@ double Runner::run(std::span<const Dispatch> dispatches) {
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands_};
   const VkFence fence = fence_.get();
   check(c.vkQueueSubmit(c.queue, 1, &submit, fence), "submit work to the device");
+  if (meanwhile) meanwhile();
   check(c.vkWaitForFences(c.device, 1, &fence, VK_TRUE, UINT64_MAX), "wait for the device");
   check(c.vkResetFences(c.device, 1, &fence), "reset a fence");
   if (!timestamps_.get()) {
