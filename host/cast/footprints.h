@@ -26,6 +26,10 @@ struct Footprint {
   bool seen() const { return x0 <= x1 && y0 <= y1; }
 };
 
+inline bool overlap(const Footprint& f, const Crop& area) {
+  return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
+}
+
 /// Where a solid is certainly hit, in pixels of the region: an ellipse (corners 0: x, y, half its width, half its height) or
 /// a polygon (x, y by corner, around) that is smaller by `margin`.
 struct Cover {

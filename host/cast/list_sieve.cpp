@@ -30,10 +30,6 @@ WIDE std::array<std::uint32_t, 2> rangeOf(std::span<const SeenWithin> solids, de
 
 }  // namespace
 
-bool overlap(const Footprint& f, const Crop& area) {
-  return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
-}
-
 ListSample::ListSample(const Solids& solids, Footprints& footprints) {
   const std::size_t step = solids.size() / 256 + 1;
   std::array<ShapeRef, Footprints::block> shapes;

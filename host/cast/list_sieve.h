@@ -27,8 +27,6 @@ struct ListHead {
   std::uint32_t solid;
 };
 
-bool overlap(const Footprint& f, const Crop& area);
-
 /// A few hundred solids from all over a scene, those of them that are seen.
 struct ListSample {
   ListSample(const Solids& solids, Footprints& footprints);

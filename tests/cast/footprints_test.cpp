@@ -38,10 +38,6 @@ std::vector<Shape> solids(int each) {
   return all;
 }
 
-bool meet(const Footprint& f, const Crop& area) {
-  return f.x0 < area.x + area.width && f.x1 >= area.x && f.y0 < area.y + area.height && f.y1 >= area.y;
-}
-
 struct Measured {
   Scene scene = randomScene("sphere", 1, 1);  // for its camera
   Silhouette silhouette{scene, width, height, 1};
@@ -152,7 +148,7 @@ TEST(SeenWithin, HasWhatIsSeenInItsPartOfThePicture) {
   for (const Shape& shape : solids(80)) {
     const Footprint f = m.seen(shape);
     for (const Crop& area : {Crop{0, 0, 32, 16}, Crop{32, 0, 40, 16}, Crop{0, 16, 32, 40}, Crop{32, 16, 40, 40}}) {
-      if (!f.seen() || !meet(f, area)) continue;
+      if (!f.seen() || !overlap(f, area)) continue;
       const SeenWithin s = within(f, 7, area);
       EXPECT_EQ(s.solid, 7u);
       EXPECT_EQ(s.nearest(), f.nearest);
@@ -250,7 +246,7 @@ TEST(Sieve, KeepsWhatIsNearestInSomePixel) {
     std::vector<Footprint> seen;
     for (std::uint32_t i = 0; i < world.solids.size(); ++i) {
       const Footprint f = seen.emplace_back(m.seen(world.solids[i].shape));
-      if (!f.seen() || !meet(f, area)) continue;
+      if (!f.seen() || !overlap(f, area)) continue;
       if (i + 1 == world.solids.size() && area.x == 0) wide.push_back({f, i});
       else {  // as two threads take them
         (i / 32 % 2 ? first : second)[slices.of(f.nearest)].push_back(within(f, i, area));

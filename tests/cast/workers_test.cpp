@@ -52,6 +52,21 @@ TEST(Workers, AllPiecesAreDoneWhenRunReturns) {
   EXPECT_GT(others + (workers.threads() == 1), 0);
 }
 
+/// Whether work comes at once, later than they stay awake for, or not at all before they are woken again.
+TEST(Workers, WhoHasBeenWokenTakesWhatComes) {
+  Workers workers;
+  const int threads = static_cast<int>(workers.threads());
+  for (int round = 0; round < 60; ++round) {
+    workers.wake();
+    if (round % 3 == 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (round % 3 == 2) workers.wake();
+    Meeting meeting(workers.threads());
+    std::atomic<int> come = 0;
+    workers.run(threads, [&](int) { ++come, meeting.wait(); });  // needs all of them
+    EXPECT_EQ(come, threads);
+  }
+}
+
 TEST(ListBuilder, PassesOnWhatTheRoomThrowsAndServesAgain) {
   for (const std::size_t solids : {std::size_t{20}, std::size_t{5000}}) {  // one thread, and all
     const Scene scene = randomScene("sphere", solids, 1);
