@@ -70,8 +70,8 @@ class ListLayout {
     /// Of all tiles, or of all wide tiles, row by row.
     struct Spread {
       std::array<Pile<ListEntry>, kindCount> entries;
-      std::array<std::vector<std::uint32_t>, kindCount>
-          tiles;  // entries; then where the next goes. Empty: the kind is not in it
+      // By tile: how many; then where the next goes. Empty: the kind is not there.
+      std::array<std::vector<std::uint32_t>, kindCount> tiles;
       void clear();
       bool add(std::size_t kind, const std::byte* record, const Footprint& seen, int shift, std::size_t across,
                const TileLimits& limits);
