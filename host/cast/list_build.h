@@ -29,7 +29,8 @@ class ListBuilder {
   /// Which solids are seen where, and their records: forms for the camera's one eye, correct to 2^-3 of the type's
   /// rounding (docs/numerics.md), or the solids themselves from the camera's centre, for rays that are free.
   /// `eye` is eyeFrame() of the scene, for forms of `type`, otherwise for f64.
-  /// `room` is called when what is found is known; to what it says the lists are then written.
+  /// `room` is called when what is found is known, but for tiles(), which may still be on its way; to what it says the lists
+  /// are then written.
   void collect(const Scene& scene, const EyeFrame& eye, RealType type, bool eyeForms, const Silhouette& silhouette,
                const ListGrid& grid, const std::function<ListRoom()>& room);
 
