@@ -131,7 +131,10 @@ void main() {
   }
   UNROLL for (int y = 0; y < 4; ++y) {
     Result result[STORED];
-    UNROLL for (int x = 0; x < 4; ++x) result[x] = resultOf(best[4 * y + x], ray[4 * y + x].squared);
+    UNROLL for (int x = 0; x < 4; ++x) {
+      real squared = ray[4 * y + x].squared;
+      result[x] = resultOf(best[4 * y + x], squared, root(squared));
+    }
     storeRow((tile.y + uint(y)) * portion.stride + tile.x, result);
   }
 }

@@ -101,11 +101,10 @@ struct Result {
 };
 
 #if METHOD != 0
-Result resultOf(Best best, real squared) {
+Result resultOf(Best best, real squared, real length) {  // of the ray's direction
   Result result;
   // The first value stored has to depend on the whole search, index included where it is wanted.
   result.hit = (WANTED & SOLID_INDEX) != 0u ? atLeast(best.index, number(0.0)) : less(number(0.0), best.s);
-  real length = root(squared);
   result.distance = toFloat(mul(quotient(length, best.s), viewRow(0u).z));
   // Rounded once, as the second pass rounds it: which rays are in doubt must not show.
   result.cosine = toFloat(quotient(best.cosine, length));

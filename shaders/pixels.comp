@@ -94,6 +94,9 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
 #else
   EyeRay ray[RAYS];
 #endif
+#if METHOD != 0
+  real length[RAYS];  // of the direction
+#endif
   UNROLL for (uint k = 0u; k < RAYS; ++k) {
     CameraRay camera = cameraRay(column[k], row);
 #if METHOD == 0
@@ -107,7 +110,6 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
     ray[k].direction = combine(camera.direction.x, camera.direction.y, camera.direction.z);
     ray[k].squared = dot3(ray[k].direction, ray[k].direction);
     ray[k].reach = length3(camera.origin);
-    best[k] = noHit();
 #else
     ray[k].direction = camera.direction;
     ray[k].squared = linear(camera.direction, camera.direction);
@@ -116,7 +118,15 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
     } else {
       ray[k].world = camera.direction;
     }
+#endif
+#if METHOD != 0
+    length[k] = root(ray[k].squared);
     best[k] = noHit();
+#ifdef EXACT
+    // Any start above the bound serves. This one makes the search wait for the roots: otherwise all of them come at the end,
+    // one after the other, with nothing left to do beside them.
+    best[k].margin = length[k];
+#endif
 #endif
 #if STORAGE
     if ((portion.stage & 1u) == 0u) best[k] = kept(state[pixel + k]);
@@ -160,7 +170,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
     result[k].point = point;
     result[k].direction = direction[k];
 #else
-    result[k] = resultOf(best[k], ray[k].squared);
+    result[k] = resultOf(best[k], ray[k].squared, length[k]);
 #if WORLD && FREE
     precise real3 point = ray[k].origin + ray[k].direction / best[k].s;
     result[k].point = point;
