@@ -61,6 +61,10 @@ void decided(inout Best best, real value) {
 #define TIES true
 #endif
 
+#ifndef ADDRESS
+#define ADDRESS 0
+#endif
+
 // A candidate at inverse distance s. At equal s the solid with the lower index wins; `exact` leaves that, like
 // every near tie, to the second pass.
 void offer(inout Best best, bool inside, real s, real cosine, real index) {
@@ -70,6 +74,12 @@ void offer(inout Best best, bool inside, real s, real cosine, real index) {
   real loser = select(candidate, best.s, nearer);
   best.second = select(best.second, loser, less(best.second, loser));
 #else
+  // Numbers loaded by address are computed with all at once, and masks made long before they are used go to memory and
+  // back: a number is selected instead. Where numbers are constants the mask is a part of the next comparison.
+  if (ADDRESS != 0 && !TIES) {
+    s = select(number(0.0), s, inside);
+    inside = true;
+  }
   bool nearer = inside && (less(best.s, s) || (TIES && atLeast(s, best.s) && less(index, best.index)));
 #endif
   best.s = select(best.s, s, nearer);

@@ -32,8 +32,10 @@ layout(constant_id = 36) const bool GREY = false;  // rgb8: a byte a pixel, in t
 #define LOCAL 32u
 #define POSITION 64u
 
+#if !ADDRESS
 layout(set = 0, binding = 2, std140) uniform View { RAW view[VIEW_RAWS]; };
 real4 viewRow(uint row) { return ROW(view, row); }
+#endif
 
 layout(set = 0, binding = 3, std430) buffer Image { uvec4 image[]; };
 

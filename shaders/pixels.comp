@@ -13,9 +13,13 @@
 //   METHOD     0 naive, 1 fast, 2 exact           ARITHMETIC  of `real`, see numeric.glsl
 //   CAMERA     0 perspective, 1 environment, 2 orthographic
 //   STORAGE    0 records in uniform buffers, 1 in storage buffers and searched in portions
+//   ADDRESS    1, with STORAGE 0: records and view by their addresses (records.glsl)
 //   HITS       1: also normals, local coordinates and hit points
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#if ADDRESS
+#extension GL_EXT_buffer_reference : require
+#endif
 
 #if METHOD == 2
 #define EXACT
@@ -36,7 +40,17 @@ layout(push_constant) uniform Portion {
   uint sampleX, sampleY;         // which sample of every pixel
   uint tileX, tileY;             // STORAGE: first pixel of this dispatch in the band, in whole workgroups
   uint count[7], firstRow[7];    // STORAGE: this portion's solids
+#if ADDRESS
+  uint unused;
+  Rows records, view;  // eye records, or, for free rays, world records
+#endif
 } portion;
+
+#if ADDRESS
+real4 viewRow(uint row) { return ROW(portion.view.rows, row); }
+real4 record(uint row) { return ROW(portion.records.rows, row); }
+real4 worldRecord(uint row) { return ROW(portion.records.rows, row); }
+#endif
 
 layout(constant_id = 31) const uint RAYS = 4u;  // of an invocation: 4, 8 or 16
 #define STORED RAYS
@@ -148,7 +162,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
   if (KIND##_COUNT > 0u) {                                                    \
     uint at = FIRST_ROW(NUMBER, next);                                        \
     for (uint i = 0u; i < COUNT(NUMBER, KIND); ++i) {                         \
-      UNROLL for (uint k = 0u; k < RAYS; ++k) TEST(kind, at);                   \
+      UNROLL for (uint k = 0u; k < RAYS; ++k) TEST(kind, at);                 \
       at += ROWS(EYE_ROWS, WORLD_ROWS);                                       \
     }                                                                         \
     next = at;                                                                \
@@ -195,9 +209,6 @@ void main() {
   y += portion.tileY;
 #endif
   uint pixel = y * portion.stride + x;
-#if EYE && !STORAGE
-  if (HELD) [[unroll]] for (uint i = 0u; i < RECORD_RAWS; ++i) held[i] = records[i];
-#endif
   uint column[RAYS];
   UNROLL for (uint k = 0u; k < RAYS; ++k) column[k] = (portion.firstX + x + k) * SAMPLES + portion.sampleX;
   Result result[RAYS];

@@ -1,6 +1,8 @@
 // Where rows of numbers come from. STORAGE 0: uniform buffers (llvmpipe loads them once for all lanes: 1.7 times
 // faster), STORAGE 1: storage buffers, for scenes beyond the uniform range; STORAGE 2: a texel buffer, where each lane
-// loads rows of its own; STORAGE 3: a storage buffer for the same. A row is four `real`; a double-float row is two vec4, high parts first.
+// loads rows of its own; STORAGE 3: a storage buffer for the same. ADDRESS 1, with STORAGE 0: by the buffers' addresses. llvmpipe
+// compares every number of a uniform buffer with the buffer's size and branches around the load, and keeps little in
+// registers across branches; from an address it loads the number, once for all lanes. A row is four `real`; a double-float row is two vec4, high parts first.
 #ifndef SOLIDCAST_RECORDS
 #define SOLIDCAST_RECORDS
 #include "numeric.glsl"
@@ -58,19 +60,14 @@ real4 record(uint row) {
   return loadedRow(row);
 }
 real4 worldRecord(uint row) { return record(row); }  // the lists of free rays hold nothing else
+#elif ADDRESS
+// pixels.comp's push constants say where; it defines record() and worldRecord().
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Rows { RAW rows[]; };
 #elif EYE
 RECORDS(0, Records, records, RECORD_RAWS);
-#if STORAGE
 real4 record(uint row) { return ROW(records, row); }
-#else
-// With few solids, whose loops are unrolled, all numbers are loaded before the search: each load from a uniform buffer is
-// a bounds check and a branch, and values do not stay in registers across branches.
-layout(constant_id = 33) const bool HELD = false;
-RAW held[RECORD_RAWS];
-real4 record(uint row) { return HELD ? ROW(held, row) : ROW(records, row); }
 #endif
-#endif
-#if WORLD
+#if WORLD && !ADDRESS
 RECORDS(1, WorldRecords, worldRecords, WORLD_RAWS);
 real4 worldRecord(uint row) { return ROW(worldRecords, row); }
 #endif

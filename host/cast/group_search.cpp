@@ -10,20 +10,19 @@ namespace solidcast {
 namespace {
 
 constexpr int tileWidth = 64;
-// Loops over so few solids are unrolled, and their records loaded before the search.
-constexpr std::uint32_t mostHeld = 16;
-
-/// Pixels of an invocation. More share more, until the registers are full: the state of `exact` is twice as large, and
-/// constants need none. Double-float takes seconds to compile even for four.
-std::uint32_t raysOf(const Program& p, std::uint32_t solids, bool baked, bool wide) {
-  if (!wide || !p.eye() || p.storage || p.hits || p.real == RealType::df32 || solids > mostHeld) return 4;
-  return p.method == Method::fast && baked ? 16 : 8;
+/// Pixels of an invocation. More share more, until the registers are full: the state of `exact` is twice as large.
+/// Double-float takes seconds to compile even for four.
+std::uint32_t raysOf(const Program& p, std::uint32_t solids, bool wide) {
+  if (!wide || !p.eye() || p.storage || p.hits || p.real == RealType::df32 || solids > mostWide) return 4;
+  return p.method == Method::fast ? 16 : 8;
 }
 
 // pixels.comp: Portion
 struct PixelPush {
   std::uint32_t wholeWidth, wholeHeight, firstX, firstY, rows, stride, stage, sampleX, sampleY, tileX, tileY;
   SearchPortion search;
+  std::uint32_t unused = 0;
+  std::uint64_t records = 0, view = 0;  // addresses, where the program reads by them
 };
 static_assert(sizeof(PixelPush) <= 128);
 
@@ -114,20 +113,23 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   constants[doubt] = bits(doubtOf(program_));
   constants[hitsInDoubt] = program_.method == Method::exact && program_.real == RealType::f32;
   solids_ = search.solids();
-  constants[held] = wide_ && !bakeAtOnce_ && program_.eye() && !program_.storage && program_.real != RealType::df32 &&
-                    solids_ <= mostHeld;
-  constants[rays] = raysOf(program_, solids_, bakeAtOnce_, wide_);
+  program_.address = wide_ && !bakeAtOnce_ && !program_.storage && solids_ <= mostWide;
+  constants[rays] = raysOf(program_, solids_, wide_);
   const bool same = pipeline_ && constants == constants_ && !bakeAtOnce_;
   if (same) return;
   constants_ = std::move(constants);
+  if (bakeAtOnce_) return bake();
+  loadModule();
+  usePipeline(program_.address ? gpu::baked(spirv_, {}) : spirv_);  // baked: with its loops unrolled
+}
+
+void GroupSearch::loadModule() {
   if (const std::string name = program_.moduleName(); name != compiled_) {
     gpu::CompiledModule module = programModule(program_, job_.options);
     job_.stats.files.insert(job_.stats.files.end(), module.files.begin(), module.files.end());
     spirv_ = std::move(module.spirv);
     compiled_ = name;
   }
-  if (bakeAtOnce_) bake();
-  else usePipeline(constants_.at(held) ? gpu::baked(spirv_, {}) : spirv_);  // baked: with its loops unrolled
 }
 
 void GroupSearch::usePipeline(std::span<const std::uint32_t> spirv) {
@@ -145,8 +147,9 @@ void GroupSearch::bake() {
   for (std::uint32_t binding : {0u, 1u, 2u})  // world records by index of the hit stay a buffer
     if (!buffers_[binding].bytes().empty() && !(binding == 1 && program_.hits))
       contents[binding] = buffers_[binding].bytes();
-  constants_[held] = false;
-  constants_[rays] = raysOf(program_, solids_, true, true);
+  program_.address = false;
+  loadModule();
+  constants_[rays] = raysOf(program_, solids_, true);
   usePipeline(gpu::baked(spirv_, contents));
   job_.stats.plan.push_back("records baked into the pipeline as constants");
   job_.stats.planName = planName(Plan::baked);
@@ -194,11 +197,15 @@ double GroupSearch::dispatch(const PassTarget& target, const Band& band, int sam
   const int n = job_.samples;
   std::vector<PixelPush> pushes;
   std::vector<int> heights;
+  auto addressOf = [&](std::size_t binding) {
+    return program_.address && bound[binding] ? bound[binding]->address() : 0;
+  };
   auto push = [&](int x, int y, int rows, const std::vector<SearchPortion>& search) {
     for (std::size_t p = 0; p < search.size(); ++p) {
       std::uint32_t stage = (p == 0 ? 1u : 0u) | (p + 1 == search.size() ? 2u : 0u);
       pushes.push_back({u(job_.job.width), u(job_.job.height), u(job_.crop.x), u(job_.crop.y + band.firstRow),
-                        u(target.rows), u(target.stride), stage, u(sample % n), u(sample / n), u(x), u(y), search[p]});
+                        u(target.rows), u(target.stride), stage, u(sample % n), u(sample / n), u(x), u(y), search[p], 0,
+                        addressOf(program_.eye() ? 0 : 1), addressOf(2)});
       heights.push_back(rows);
     }
   };

@@ -25,6 +25,7 @@ class GroupSearch : public PixelSearch {
 
   void chooseStorage(const Records& search, std::size_t worldBytes);
   void makePipeline(const Records& search, const Records& world, std::size_t viewRaws);
+  void loadModule();
   void usePipeline(std::span<const std::uint32_t> spirv);
   void bake();
   void prepareTiles(const Band& band);

@@ -26,8 +26,8 @@ double solidNs(const Program& p) {
 }
 constexpr double freeRays = 2.5;    // orthographic cameras: times the above
 constexpr double bakedPart = 0.45;  // of a ray from a uniform buffer
-constexpr double widePart = 0.7;    // the same with 8 rays an invocation and records held
-// More rays an invocation save about 1 ns a ray and take up to 20 ms longer to compile with a warm cache, 100 ms without.
+constexpr double wideFast = 0.55, wideExact = 0.8;  // the same with more rays an invocation, by addresses
+// More rays an invocation save about 1.5 ns a ray (fast) and take 20 to 45 ms longer to compile.
 constexpr double fewestWide = 2e7;
 constexpr double storageTimes = 1.5;    // the same
 constexpr double pipelineMs = 15;       // from the driver's cache, as most are
@@ -45,6 +45,14 @@ std::uint32_t total(const PlanFacts& f) {
   std::uint32_t n = 0;
   for (std::uint32_t c : f.count) n += c;
   return n;
+}
+
+/// Records by addresses, with loops unrolled and many rays an invocation: where there is such a module (shaders/CMakeLists.txt).
+bool readsByAddress(const PlanFacts& f) {
+  const Program& p = f.program;
+  return f.addresses && p.job == Job::pixels && p.method != Method::naive && !p.hits &&
+         (p.method == Method::fast || p.real == RealType::f64) && total(f) <= mostWide &&
+         f.pixels * f.pictures >= fewestWide;
 }
 
 /// One free ray through an index, wall ns on two threads: steps grow with the logarithm of the number of solids, and what
@@ -94,7 +102,7 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
     }
     case Plan::uniform:
       cost.prepare_ms = flatten + pipelineMs;
-      cost.rays_ms = rays * perSolid * each * (rays >= fewestWide ? widePart : 1);
+      cost.rays_ms = rays * perSolid * each * (!readsByAddress(f) ? 1 : f.program.method == Method::fast ? wideFast : wideExact);
       if (bytes > f.uniformRange)
         cost.impossible =
             std::to_string(bytes) + " bytes of records, at most " + std::to_string(f.uniformRange) + " fit";
@@ -154,6 +162,7 @@ PlanFacts planFacts(const gpu::DeviceInfo& device, const World& world, const Pro
   facts.pictures = options.pictures;
   facts.moving = options.moving;
   facts.llvmpipe = device.name.starts_with("llvmpipe");
+  facts.addresses = facts.llvmpipe && device.bufferAddresses;
   facts.uniformRange = device.limits.maxUniformBufferRange;
   facts.storageRange = device.limits.maxStorageBufferRange;
   return facts;
@@ -174,7 +183,7 @@ PlanChoice choosePlan(const PlanFacts& facts, Plan asked) {
     throw Error(Exit::usage, std::string("--plan ") + planName(best.plan) + ": not possible here: " + best.impossible);
   PlanChoice choice;
   choice.plan = best.plan;
-  choice.wide = best.plan == Plan::baked || facts.pixels * facts.pictures >= fewestWide;
+  choice.wide = best.plan == Plan::baked || (best.plan == Plan::uniform && readsByAddress(facts));
   choice.bakingMs = bakingMs(facts.program.real, total(facts));
   choice.bakeLater = asked == Plan::automatic && best.plan == Plan::uniform && !facts.moving &&
                      costOf(Plan::baked, facts).impossible.empty();

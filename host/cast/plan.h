@@ -18,6 +18,7 @@ struct PlanFacts {
   int pictures = 1;     // that the caster is made for
   bool moving = false;  // the camera or the scene changes from picture to picture
   bool llvmpipe = false;
+  bool addresses = false;  // shaders can read buffers by their addresses, and that pays
   std::size_t uniformRange = 0, storageRange = 0;  // bytes that one buffer may have
 };
 
@@ -30,11 +31,15 @@ struct PlanCost {
 
 struct PlanChoice {
   Plan plan;
-  bool wide = false;       // so many rays that more of them in one invocation, slower to compile, pay
+  // So many rays that more of them in one invocation, slower to compile, pay: with `baked`, and with `uniform` by addresses.
+  bool wide = false;
   bool bakeLater = false;  // change over to `baked` once dispatches have taken bakingMs
   double bakingMs = 0;
   std::vector<PlanCost> costs;  // of all plans, the chosen one first
 };
+
+/// Scenes of more solids take too long to compile with loops unrolled or with more rays an invocation.
+constexpr std::uint32_t mostWide = 16;
 
 /// What compiling a pipeline with the records as constants costs, in ms, at most about (docs/performance-notes.md).
 double bakingMs(RealType real, std::uint32_t solids);

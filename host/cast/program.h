@@ -21,6 +21,7 @@ struct Program {
   int camera = 0;        // index of the Camera variant as pixels.comp numbers it
   bool storage = false;  // records in storage buffers, searched in portions
   bool index = false;    // searched by an index (index.h); storage too
+  bool address = false;  // records and view by their addresses, not from uniform buffers
   bool hits = false;     // normals, local coordinates and points from the shader
   bool eye() const { return job != Job::rays && method != Method::naive && camera != 2; }
 
@@ -47,8 +48,7 @@ enum Constant : std::uint32_t {
   someGraze,
   rays,
   someTie,
-  held,
-  portioned,
+  portioned = 34,
   someFarSphere,
   greyLevels
 };

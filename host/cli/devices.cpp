@@ -40,6 +40,7 @@ Json toJson(const gpu::DeviceInfo& info) {
           {"api_version", info.apiVersion},
           {"float64", info.float64},
           {"int64", info.int64},
+          {"buffer_addresses", info.bufferAddresses},
           {"limits",
            {{"max_storage_buffer_bytes", limits.maxStorageBufferRange},
             {"max_uniform_buffer_bytes", limits.maxUniformBufferRange},
@@ -93,7 +94,8 @@ void print(const gpu::DeviceInfo& info) {
             << " x " << limits.maxWorkGroupCount[1] << " x " << limits.maxWorkGroupCount[2] << " workgroups, subgroup "
             << limits.subgroupSize << ", timestamps "
             << (limits.timestampPeriod > 0 ? std::to_string(limits.timestampPeriod) + " ns" : "none") << "\n"
-            << "   float64 " << (info.float64 ? "yes" : "no") << ", int64 " << (info.int64 ? "yes" : "no") << "\n";
+            << "   float64 " << (info.float64 ? "yes" : "no") << ", int64 " << (info.int64 ? "yes" : "no")
+            << ", buffer addresses " << (info.bufferAddresses ? "yes" : "no") << "\n";
 }
 
 void listAll(bool asJson) {

@@ -33,14 +33,17 @@ Core::Core(const Device::Options& options) : instance(options.validation) {
   instance.vkGetPhysicalDeviceMemoryProperties(physical, &memory);
   findQueueFamily();
 
-  // These two cost nothing where they exist; modules that use them are checked one by one.
+  // These three cost nothing where they exist; modules that use them are checked one by one.
   const VkPhysicalDeviceFeatures features{.shaderFloat64 = info.float64, .shaderInt64 = info.int64};
+  VkPhysicalDeviceBufferDeviceAddressFeatures addresses{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES, .bufferDeviceAddress = VK_TRUE};
   const float priority = 1;
   const VkDeviceQueueCreateInfo queueInfo{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                           .queueFamilyIndex = queueFamily,
                                           .queueCount = 1,
                                           .pQueuePriorities = &priority};
   const VkDeviceCreateInfo deviceInfo{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                      .pNext = info.bufferAddresses ? &addresses : nullptr,
                                       .queueCreateInfoCount = 1,
                                       .pQueueCreateInfos = &queueInfo,
                                       .pEnabledFeatures = &features};
@@ -135,6 +138,13 @@ std::span<std::byte> Buffer::bytes() const {
   return impl_ ? std::span<std::byte>(impl_->mapping, impl_->bytes) : std::span<std::byte>();
 }
 
+std::uint64_t Buffer::address() const {
+  const Core& core = *impl_->core;
+  const VkBufferDeviceAddressInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
+                                       .buffer = impl_->buffer.get()};
+  return core.vkGetBufferDeviceAddress(core.device, &info);
+}
+
 Buffer Device::makeBuffer(std::size_t bytes, BufferUse use) {
   Core& core = *impl_->core;
   const bool uniform = use == BufferUse::uniform, texels = use == BufferUse::texels;
@@ -152,11 +162,13 @@ Buffer Device::makeBuffer(std::size_t bytes, BufferUse use) {
   impl->core = impl_->core;
   impl->bytes = bytes;
   impl->use = use;
+  const bool addressed = uniform && core.info.bufferAddresses;
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                 .size = std::max<std::size_t>(bytes, 16),  // Vulkan has no empty buffers
                                 .usage = VkBufferUsageFlags(uniform  ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
                                                             : texels ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT
-                                                                     : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)};
+                                                                     : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) |
+                                         VkBufferUsageFlags(addressed ? VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT : 0)};
   VkBuffer buffer{};
   check(core.vkCreateBuffer(core.device, &info, nullptr, &buffer), "make a buffer");
   impl->buffer = {core.device, buffer, core.vkDestroyBuffer};
@@ -166,8 +178,10 @@ Buffer Device::makeBuffer(std::size_t bytes, BufferUse use) {
   VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
   VkDeviceMemory memory{};
   for (std::uint32_t type : memoryTypes(core, needs.memoryTypeBits, use)) {
+    const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
+                                          .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
     const VkMemoryAllocateInfo allocation{
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = type};
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .pNext = addressed ? &flags : nullptr, .allocationSize = needs.size, .memoryTypeIndex = type};
     result = core.vkAllocateMemory(core.device, &allocation, nullptr, &memory);
     if (result == VK_SUCCESS) break;
   }

@@ -27,7 +27,7 @@ struct DeviceInfo {
   int index = 0;  // as counted by the Vulkan loader
   std::string name, driver, driverInfo, apiVersion;
   std::string type;  // "cpu", "discrete gpu", "integrated gpu", "virtual gpu", "other"
-  bool float64 = false, int64 = false;
+  bool float64 = false, int64 = false, bufferAddresses = false;
   DeviceLimits limits{};
 };
 
@@ -44,6 +44,9 @@ class Buffer {  // host-visible, persistently mapped; moved, never copied
   Buffer& operator=(Buffer&&) noexcept;
   ~Buffer();
   std::span<std::byte> bytes() const;  // the mapping; empty for a default-made buffer
+  /// Of a uniform buffer, for shaders that read it by a reference among their push constants; it must outlive their run.
+  /// Only on devices with bufferAddresses.
+  std::uint64_t address() const;
   template <class T>
   std::span<T> as() const {
     return {reinterpret_cast<T*>(bytes().data()), bytes().size() / sizeof(T)};

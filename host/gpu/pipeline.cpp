@@ -22,6 +22,8 @@ bool serves(const Core& core, std::uint32_t capability) {
       return core.info.float64;
     case spv::CapabilityInt64:
       return core.info.int64;
+    case spv::CapabilityPhysicalStorageBufferAddresses:
+      return core.info.bufferAddresses;
     case spv::CapabilityGroupNonUniform:
       return subgroup(VK_SUBGROUP_FEATURE_BASIC_BIT);
     case spv::CapabilityGroupNonUniformVote:

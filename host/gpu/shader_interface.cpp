@@ -125,6 +125,8 @@ std::uint32_t Module::byteSize(std::uint32_t id, std::uint32_t matrixStride) con
     case spv::OpTypeInt:
     case spv::OpTypeFloat:
       return w[0] / 8;
+    case spv::OpTypePointer:  // a buffer's address
+      return 8;
     case spv::OpTypeVector:
       return w[1] * byteSize(w[0]);
     case spv::OpTypeMatrix:
@@ -236,6 +238,8 @@ std::string capabilityName(std::uint32_t capability) {
       return "Int64";
     case spv::CapabilityInt64Atomics:
       return "Int64Atomics";
+    case spv::CapabilityPhysicalStorageBufferAddresses:
+      return "PhysicalStorageBufferAddresses";
     case spv::CapabilityGroupNonUniform:
       return "GroupNonUniform";
     case spv::CapabilityGroupNonUniformVote:

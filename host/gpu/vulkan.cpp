@@ -210,6 +210,9 @@ DeviceInfo Instance::describe(VkPhysicalDevice device, int index) const {
   if (all.properties.apiVersion >= VK_API_VERSION_1_2) subgroup.pNext = &driver;
   vkGetPhysicalDeviceProperties2(device, &all);
   VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+  VkPhysicalDeviceBufferDeviceAddressFeatures addresses{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES};
+  if (all.properties.apiVersion >= VK_API_VERSION_1_2) features.pNext = &addresses;
   vkGetPhysicalDeviceFeatures2(device, &features);
   VkPhysicalDeviceMemoryProperties memory{};
   vkGetPhysicalDeviceMemoryProperties(device, &memory);
@@ -225,6 +228,7 @@ DeviceInfo Instance::describe(VkPhysicalDevice device, int index) const {
   info.type = typeName(properties.deviceType);
   info.float64 = features.features.shaderFloat64;
   info.int64 = features.features.shaderInt64;
+  info.bufferAddresses = addresses.bufferDeviceAddress;
   info.limits.maxUniformBufferRange = limits.maxUniformBufferRange;
   info.limits.maxStorageBufferRange = limits.maxStorageBufferRange;
   info.limits.maxTexelBufferElements = limits.maxTexelBufferElements;

@@ -30,6 +30,7 @@
 #define SOLIDCAST_DEVICE_FUNCTIONS(X) \
   X(vkDestroyDevice)                  \
   X(vkGetDeviceQueue)                 \
+  X(vkGetBufferDeviceAddress)         \
   X(vkAllocateMemory)                 \
   X(vkFreeMemory)                     \
   X(vkMapMemory)                      \

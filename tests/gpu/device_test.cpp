@@ -53,6 +53,32 @@ void main() {
   EXPECT_TRUE(contains(tooFew, "20 bytes") && contains(tooFew, "given 16")) << tooFew;
 }
 
+TEST_F(DeviceTest, UniformBuffersAreReadByTheirAddresses) {
+  const Pipeline byAddress = pipeline(R"(#version 460
+#extension GL_EXT_buffer_reference : require
+layout(local_size_x = 4) in;
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Rows { vec4 rows[]; };
+layout(std430, set = 0, binding = 0) writeonly buffer Out { float results[]; };
+layout(push_constant) uniform Constants { uint first; Rows factors, offsets; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  results[i] = float(i) * factors.rows[first].y + offsets.rows[0].x;
+}
+)");
+  const Buffer factors = filled<float>({0, 2, 0, 0, 0, 10, 0, 0}, BufferUse::uniform);
+  const Buffer offsets = filled<float>({0.5f, 0, 0, 0}, BufferUse::uniform);
+  const Buffer results = device().makeBuffer(4 * sizeof(float), BufferUse::readback);
+  struct {
+    std::uint32_t first = 1, unused = 0;
+    std::uint64_t factors, offsets;
+  } constants{.factors = factors.address(), .offsets = offsets.address()};
+  const auto bytes = std::as_bytes(std::span(&constants, 1));
+  run({&byAddress, {&results}, bytes, {1, 1, 1}});
+  EXPECT_EQ(read<float>(results), (std::vector<float>{0.5, 10.5, 20.5, 30.5}));
+  const auto tooFew = errorOf(Exit::shader, [&] { run({&byAddress, {&results}, bytes.first(16), {1, 1, 1}}); });
+  EXPECT_TRUE(contains(tooFew, "24 bytes") && contains(tooFew, "given 16")) << tooFew;
+}
+
 TEST_F(DeviceTest, SpecialisationSetsConstantsAndWorkgroupSize) {
   const char* const text = R"(#version 460
 layout(local_size_x_id = 7) in;
@@ -243,7 +269,7 @@ TEST_F(DeviceTest, DescribesItself) {
   EXPECT_TRUE(contains(info.name, "llvmpipe")) << info.name;
   EXPECT_EQ(info.type, "cpu");
   EXPECT_EQ(info.driver, "llvmpipe");
-  EXPECT_TRUE(info.float64 && info.int64);
+  EXPECT_TRUE(info.float64 && info.int64 && info.bufferAddresses);
   EXPECT_EQ(info.limits.timestampPeriod, 1.0f);
   EXPECT_GT(device().instanceMilliseconds(), 0);
   EXPECT_GT(device().deviceMilliseconds(), 0);

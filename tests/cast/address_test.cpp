@@ -1,0 +1,102 @@
+// Uniform plan for so many rays that records are read by their addresses, many rays an invocation: no bit of any channel may
+// show it.
+#include "host/cast/plan.h"
+#include "host/scene/camera_path.h"
+#include "host/scene/random.h"
+#include "tests/cast/fixture.h"
+
+namespace solidcast {
+namespace {
+
+constexpr int kManyPictures = 1'000'000;  // of even the smallest size
+
+class AddressTest : public OnDevice, public testing::WithParamInterface<Method> {
+ protected:
+  CastOptions options(int pictures) const {
+    return {.method = GetParam(), .plan = Plan::uniform, .pictures = pictures, .moving = true};
+  }
+  static Band whole(ImageCaster& caster) {
+    Band all;
+    caster.render([&](Band& band) { all = std::move(band); });
+    return all;
+  }
+  static bool readsByAddress(const ImageCaster& caster) { return caster.stats().module.ends_with("_address"); }
+  static RenderJob job() {
+    RenderJob job;
+    job.width = 101, job.height = 75;
+    job.channels = allChannels();
+    job.channels.normal = job.channels.local = job.channels.position = false;
+    return job;
+  }
+  void expectSamePicture(const Scene& scene, const RenderJob& job, const std::string& what) {
+    ImageCaster plain(device(), scene, job, options(1)), addressed(device(), scene, job, options(kManyPictures));
+    EXPECT_FALSE(readsByAddress(plain)) << what;
+    EXPECT_TRUE(readsByAddress(addressed)) << what;
+    expectSame(whole(addressed), whole(plain), what);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(, AddressTest, testing::Values(Method::fast, Method::exact),
+                         [](const auto& info) { return std::string(nameOf(info.param)); });
+
+TEST_P(AddressTest, DoesNotShow) {
+  for (const std::string& name : bundledScenes()) {
+    const Scene scene = loaded(name);
+    if (scene.world.solids.size() > mostWide || name.starts_with("custom")) continue;
+    expectSamePicture(scene, job(), name);
+  }
+}
+
+TEST_P(AddressTest, DoesNotShowOfAnyKindFromAnyCamera) {
+  const Camera cameras[] = {OrthographicCamera{{0, 0, 10}, {0, 0, -1}, {0, 1, 0}, 8, 6},
+                            EnvironmentCamera{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 90, 180}};
+  Scene scene = randomScene("mixed", mostWide, 4);
+  expectSamePicture(scene, job(), "perspective");
+  for (const Camera& camera : cameras) {
+    scene.camera = camera;
+    expectSamePicture(scene, job(), std::to_string(camera.index()));
+  }
+}
+
+TEST_P(AddressTest, NorWithSamplesPartsAndTies) {
+  Scene scene = loaded("a_solids.json");
+  RenderJob part = job();
+  part.samples = 2;
+  part.crop = {13, 9, 50, 37};
+  expectSamePicture(scene, part, "2x2 samples, a part of the picture");
+  scene.world.solids = {};
+  scene.world.solids.push_back({"", InfinitePlane{{0, 0, 0}, {0, 0, 1}}});
+  scene.world.solids.push_back({"", Quad{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}});
+  scene.world.solids.push_back({"", AABox{{0, 0, -1}, {2, 1, 0}}});
+  expectSamePicture(scene, job(), "solids that share a plane");
+}
+
+TEST_P(AddressTest, WhileTheCameraMovesAndSolidsComeAndGo) {
+  const Scene few = randomScene("mixed", mostWide, 1), many = randomScene("mixed", mostWide + 1, 1);
+  const RenderJob small = job();
+  ImageCaster caster(device(), few, small, options(kManyPictures));
+  EXPECT_TRUE(readsByAddress(caster));
+  Scene turned = few;
+  for (const Scene* next : std::initializer_list<const Scene*>{&few, &turned, &many, &turned}) {
+    turned.camera = orbited(turned.camera, pointLookedAt(few), 20);
+    caster.setScene(*next);
+    ImageCaster plain(device(), *next, small, options(1));
+    expectSame(whole(caster), whole(plain));
+  }
+}
+
+TEST_P(AddressTest, OnlyWhereThereIsAModuleForIt) {
+  const Scene few = loaded("a_solids.json"), many = randomScene("sphere", mostWide + 1, 1);
+  RenderJob normals = job();
+  normals.channels.normal = true;  // exact's come from the second pass
+  EXPECT_EQ(readsByAddress(ImageCaster(device(), few, normals, options(kManyPictures))), GetParam() == Method::exact);
+  EXPECT_FALSE(readsByAddress(ImageCaster(device(), many, job(), options(kManyPictures))));
+  CastOptions pairs = options(kManyPictures);
+  pairs.arithmetic = Arithmetic::df32;
+  if (GetParam() == Method::exact) EXPECT_FALSE(readsByAddress(ImageCaster(device(), few, job(), pairs)));
+  CastOptions naive = options(kManyPictures);
+  naive.method = Method::naive;
+  EXPECT_FALSE(readsByAddress(ImageCaster(device(), few, job(), naive)));
+}
+
+}  // namespace
+}  // namespace solidcast
