@@ -79,7 +79,7 @@ class ListPacking {
         continue;
       }
       flags_.grazing = flags_.grazing || records.grazing(i);
-      records.copy(i, room_(kind, 16 * rows, head), 4 * rows);
+      records.copy(i, room_(kind, 16 * rows, head));
     }
   }
 

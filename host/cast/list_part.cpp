@@ -125,7 +125,8 @@ void ListPart::look(std::size_t from, std::size_t to, Footprints& footprints, co
                   [&](const std::byte* at) { return share.addAnywhere(kind, at, head.seen, limits); });
   });
   forEachBlock(packs.world.solids, from, to, [&](const Stretch& block) {
-    const auto anywhere = [&](std::size_t i, const Footprint& f) {
+    // Inlined, so that a footprint is put together where it is kept: to copy one waits for its own small stores.
+    const auto anywhere = [&](std::size_t i, const Footprint& f) __attribute__((always_inline)) {
       if (!f.seen()) return;
       const ListHead head{f, block.first + static_cast<std::uint32_t>(i)};
       if (isWide(f, grid_)) wides.push_back(head);

@@ -33,8 +33,10 @@ class RecordBatch {
   bool poor(std::size_t i) const { return poor_[i] != 0; }
   bool grazing(std::size_t i) const { return grazing_[i] != 0; }
   /// The numbers of its rows, one after the other.
-  void copy(std::size_t i, std::byte* to, std::size_t numbers) const {
-    for (std::size_t k = 0; k < numbers; ++k) std::memcpy(to + k * sizeof(float), &row_[k][i], sizeof(float));
+  void copy(std::size_t i, std::byte* to) const {
+    if (kind_ == kinds::sphere) copyRows<2>(i, to);
+    else if (kind_ == kinds::triangle) copyRows<4>(i, to);
+    else copyRows<5>(i, to);
   }
 
   /// One array a number.
@@ -44,6 +46,11 @@ class RecordBatch {
   using Rows = float[20][block];
 
  private:
+  template <int ROWS>
+  void copyRows(std::size_t i, std::byte* to) const {
+#pragma GCC unroll 20
+    for (int k = 0; k < 4 * ROWS; ++k) std::memcpy(to + k * sizeof(float), &row_[k][i], sizeof(float));
+  }
   void add(const Span<double>& span, std::uint32_t index) {
     put(0, span.v1), put(3, span.e1), put(6, span.e2);
     numbers_.index[count_++] = index;
