@@ -118,8 +118,7 @@ void ListBuilder::sift(std::size_t thread, Shared& shared, Footprints& footprint
 void ListBuilder::listAll(std::size_t thread, Shared& shared, Footprints& footprints) {
   const std::size_t solids = shared.packs.world.solids.size(), threads = shared.threads;
   ListLayout::Share& share = layout_.share(thread);
-  parts_[thread]->look(solids * thread / threads, solids * (thread + 1) / threads, footprints, shared.packs, share,
-                       tileLimits_);
+  parts_[thread]->look(solids * thread / threads, solids * (thread + 1) / threads, footprints, shared.packs, share);
   shared.together.wait();
   for (std::size_t at; (at = shared.next++) < wideLimits_.size();) {
     const int across = grid_.wideAcross(), x = static_cast<int>(at) % across, y = static_cast<int>(at) / across;
@@ -165,7 +164,7 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
   const std::size_t most = hiding ? mostInRound(solids) : 0;
   const bool oneRound = most == solids;
   patches_.resize(hiding && !oneRound ? wideLimits_.size() : 0);
-  if (!oneRound) tileLimits_.start(static_cast<std::size_t>(grid_.across), static_cast<std::size_t>(grid_.down));
+  if (hiding && !oneRound) tileLimits_.start(static_cast<std::size_t>(grid_.across), static_cast<std::size_t>(grid_.down));
   if (most > discRoom_) discs_ = std::make_unique_for_overwrite<SmallDisc[]>(most), discRoom_ = most;
   const ListPacks packs{world, type, eyeForms, eye};
   const DepthSlices slices = slicesOf(sample);

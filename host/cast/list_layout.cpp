@@ -102,12 +102,15 @@ struct Tiles {
   DepthCode nearest;
   std::uint32_t misses;
 };
-inline __attribute__((always_inline)) bool list(const Tiles& t, std::size_t across, const TileLimits& limits,
+/// A null `limits`: all of them may.
+inline __attribute__((always_inline)) bool list(const Tiles& t, std::size_t across, const TileLimits* limits,
                                                 const std::byte* record, Pile<ListEntry>& entries,
                                                 std::uint32_t* counts) {
   const std::uint32_t moreX = t.x1 - t.x0, moreY = t.y1 - t.y0;
   ListEntry* const start = entries.room(std::max<std::size_t>(4, std::size_t{moreX + 1} * (moreY + 1)));
   ListEntry* to = start;
+  const auto rowOf = [&](std::size_t y) { return limits ? limits->row(y) : nullptr; };
+  const auto mayIn = [&](const DepthCode* row, std::size_t x) { return !limits || t.nearest <= row[x]; };
   // No branches: a third of the tiles see nothing of what they lie beside.
   const auto tile = [&](std::size_t at, std::uint32_t sees) {
     *to = {record, static_cast<std::uint32_t>(at)};
@@ -115,15 +118,15 @@ inline __attribute__((always_inline)) bool list(const Tiles& t, std::size_t acro
     counts[at] += sees;
   };
   if ((moreX | moreY) <= 1) {
-    const DepthCode *upper = limits.row(t.y0) + t.x0, *lower = limits.row(t.y1) + t.x0;
+    const DepthCode *upper = rowOf(t.y0), *lower = rowOf(t.y1);
     const std::size_t first = t.y0 * across + t.x0, below = first + (moreY ? across : 0);
-    tile(first, ~t.misses & (t.nearest <= upper[0]));
-    tile(first + moreX, ~t.misses >> 1 & moreX & (t.nearest <= upper[moreX]));
-    tile(below, ~t.misses >> 2 & moreY & (t.nearest <= lower[0]));
-    tile(below + moreX, ~t.misses >> 3 & moreX & moreY & (t.nearest <= lower[moreX]));
+    tile(first, ~t.misses & mayIn(upper, t.x0));
+    tile(first + moreX, ~t.misses >> 1 & moreX & mayIn(upper, t.x1));
+    tile(below, ~t.misses >> 2 & moreY & mayIn(lower, t.x0));
+    tile(below + moreX, ~t.misses >> 3 & moreX & moreY & mayIn(lower, t.x1));
   } else {
     for (std::size_t y = t.y0; y <= t.y1; ++y)
-      for (std::size_t x = t.x0; x <= t.x1; ++x) tile(y * across + x, t.nearest <= limits.row(y)[x]);
+      for (std::size_t x = t.x0; x <= t.x1; ++x) tile(y * across + x, mayIn(rowOf(y), x));
   }
   entries.take(static_cast<std::size_t>(to - start));
   return to != start;
@@ -142,26 +145,30 @@ bool ListLayout::Share::add(std::size_t kind, const std::byte* record, const See
                     (s.last >> 16) / side,
                     s.nearest(),
                     s.misses()};
-  return list(tiles, std::size_t{1} << shift, limits, record, entries_[kind], counts);
+  return list(tiles, std::size_t{1} << shift, &limits, record, entries_[kind], counts);
 }
 
-bool ListLayout::Share::Spread::add(std::size_t kind, const std::byte* record, const Footprint& f, int shift,
-                                    std::size_t across, const TileLimits& limits) {
-  if (tiles[kind].empty()) tiles[kind].assign(limits.size(), 0);
+inline __attribute__((always_inline)) bool ListLayout::Share::Spread::add(std::size_t kind, const std::byte* record,
+                                                                          const Footprint& f, int shift,
+                                                                          std::size_t across, std::size_t down,
+                                                                          const TileLimits* limits) {
+  if (tiles[kind].empty()) tiles[kind].assign(across * down, 0);
   const auto of = [shift](std::int32_t pixel) { return static_cast<std::uint32_t>(pixel) >> shift; };
   return list({of(f.x0), of(f.y0), of(f.x1), of(f.y1), f.nearest, f.misses}, across, limits, record, entries[kind],
               tiles[kind].data());
 }
 
 constexpr int tileShift = std::countr_zero(static_cast<unsigned>(ListGrid::tile));
-bool ListLayout::Share::addAnywhere(std::size_t kind, const std::byte* record, const Footprint& seen,
-                                    const TileLimits& limits) {
-  return anywhere_.add(kind, record, seen, tileShift, static_cast<std::size_t>(layout_->grid_.across), limits);
+bool ListLayout::Share::addAnywhere(std::size_t kind, const std::byte* record, const Footprint& seen) {
+  const ListGrid& grid = layout_->grid_;
+  return anywhere_.add(kind, record, seen, tileShift, static_cast<std::size_t>(grid.across),
+                              static_cast<std::size_t>(grid.down), nullptr);
 }
 bool ListLayout::Share::addWide(std::size_t kind, const std::byte* record, const Footprint& seen,
                                 const TileLimits& limits) {
-  return wide_.add(kind, record, seen, tileShift + layout_->shift_,
-                   static_cast<std::size_t>(layout_->grid_.wideAcross()), limits);
+  const ListGrid& grid = layout_->grid_;
+  return wide_.add(kind, record, seen, tileShift + layout_->shift_, static_cast<std::size_t>(grid.wideAcross()),
+                         static_cast<std::size_t>(grid.wideDown()), &limits);
 }
 
 void ListLayout::Share::finish(bool wideOnes) {

@@ -54,8 +54,8 @@ class ListLayout {
     /// `wideOnes`: some solid is listed for the wide tile as a whole.
     void finish(bool wideOnes);
 
-    /// `limits`: of all tiles.
-    bool addAnywhere(std::size_t kind, const std::byte* record, const Footprint& seen, const TileLimits& limits);
+    /// In all its tiles: nothing hides.
+    bool addAnywhere(std::size_t kind, const std::byte* record, const Footprint& seen);
     void gather(std::size_t patch, bool wideOnes);
 
     /// One that is listed for wide tiles as a whole; `limits`: of all of these.
@@ -74,7 +74,7 @@ class ListLayout {
       std::array<std::vector<std::uint32_t>, kindCount> tiles;
       void clear();
       bool add(std::size_t kind, const std::byte* record, const Footprint& seen, int shift, std::size_t across,
-               const TileLimits& limits);
+               std::size_t down, const TileLimits* limits);
     };
     void layOut(bool wideOnes);
     void sortBlock(std::size_t x0, std::size_t y0, const std::uint32_t* total, bool wideOnes);

@@ -33,8 +33,7 @@ struct ListPart {
 
   void start(const ListGrid& grid);
   /// Lists those that are seen, and of the wide ones where. `limits`: of all tiles.
-  void look(std::size_t from, std::size_t to, Footprints& footprints, const ListPacks& packs, ListLayout::Share& share,
-            const TileLimits& limits);
+  void look(std::size_t from, std::size_t to, Footprints& footprints, const ListPacks& packs, ListLayout::Share& share);
   /// Where each is seen, without those that `limits` hide. `discs`: of the spheres, from `from` on.
   void lookForSieve(const Solids& solids, std::size_t from, std::size_t to, Footprints& footprints,
                     const DepthSlices& slices, const TileLimits* limits, SmallDisc* discs);

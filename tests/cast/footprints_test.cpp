@@ -328,7 +328,7 @@ TEST(RecordBatch, HasTheVeryNumbersOfRecordsMadeOneByOne) {
             EXPECT_EQ(batch.grazing(i), record.grazing) << index;
             grazing += record.grazing;
             std::vector<float> rows(4 * static_cast<std::size_t>(record.rows)), ones(rows.size());
-            batch.copy(i, reinterpret_cast<std::byte*>(rows.data()), rows.size());
+            batch.copy(i, reinterpret_cast<std::byte*>(rows.data()));
             for (std::size_t k = 0; k < ones.size(); ++k) ones[k] = static_cast<float>(record.row[k / 4][k % 4]);
             EXPECT_EQ(rows, ones) << index;
             ++same;
