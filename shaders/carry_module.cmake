@@ -15,6 +15,17 @@ if(result)
   message(FATAL_ERROR "${output}")
 endif()
 
+# What drivers would have to do each time a pipeline is made: functions put where they are called, and locals that only carry
+# a value from one line to the next left out. No arithmetic is touched. (lavapipe makes a pipeline in half the time.)
+execute_process(COMMAND ${SPIRV_OPT} --target-env=vulkan1.1 --merge-return --inline-entry-points-exhaustive
+                        --eliminate-dead-functions --private-to-local --convert-local-access-chains
+                        --eliminate-local-single-block --eliminate-local-single-store --eliminate-dead-code-aggressive
+                        ${SPIRV} -o ${SPIRV}
+                RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+if(result)
+  message(FATAL_ERROR "${GLSL}: error: module ${NAME} cannot be optimised: ${output}")
+endif()
+
 execute_process(COMMAND ${SPIRV_VAL} --target-env vulkan1.1 ${SPIRV}
                 RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(result)
