@@ -106,6 +106,19 @@ TEST_P(Plumbing, SamplesIntegratorsAndSidesAreTheReferences) {
 }
 
 // llvmpipe ends a loop after 65,535 rounds without a word: the solids are searched in portions.
+/// Those that are carried were optimised when they were built.
+TEST_P(Plumbing, ShadersCompiledNowAreAsCarriedOnes) {
+  for (const std::string name : {"a_solids.json", "quadrics.json", "environment.json", "orthographic.json"}) {
+    const Scene scene = loaded(name);
+    RenderJob job = jobOf(scene, allChannels());
+    job.width = 101, job.height = 75;
+    CastOptions options{.method = GetParam()};
+    const Band carried = renderWhole(device(), scene, job, options);
+    options.shaderFolder = SOLIDCAST_SOURCE_DIR "/shaders";
+    expectSame(renderWhole(device(), scene, job, options), carried, name);
+  }
+}
+
 TEST_P(Plumbing, MoreThan65535Solids) {
   Scene scene;
   scene.width = scene.height = 16;

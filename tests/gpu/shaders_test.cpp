@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "host/carried/carried.h"
+#include "host/gpu/shader_interface.h"
 #include "tests/gpu/fixture.h"
 
 namespace solidcast::gpu {
@@ -90,10 +91,30 @@ TEST_F(ShadersTest, DefinesReachTheShader) {
   errorOf(Exit::shader, [&] { compileText(text, "d.comp", {}); });
 }
 
-TEST(CarriedTest, BuildTimeAndRunTimeGiveTheSameWords) {
-  const auto module = compile(SOLIDCAST_SOURCE_DIR "/shaders/probe.comp", {{"REAL", "float"}});
-  const auto carried = carriedModule("probe_f32");
-  EXPECT_EQ(module.spirv, std::vector<std::uint32_t>(carried.begin(), carried.end()));
+TEST(CarriedTest, BuildTimeGivesWhatRunTimeDoesWithFunctionsInlined) {
+  const fs::path shaders = SOLIDCAST_SOURCE_DIR "/shaders";
+  const auto module = compile(shaders / "pixels.comp",
+                              {{"METHOD", "2"}, {"ARITHMETIC", "1"}, {"CAMERA", "0"}, {"STORAGE", "0"}, {"HITS", "0"}},
+                              {shaders});
+  const auto carried = carriedModule("pixels_exact64_perspective");
+  const std::string later = disassemble(module.spirv), built = disassemble(carried);
+  EXPECT_TRUE(contains(later, "OpFunctionCall"));
+  EXPECT_FALSE(contains(built, "OpFunctionCall"));
+  EXPECT_LT(carried.size(), module.spirv.size());
+  const ShaderInterface a = readInterface(module.spirv, {}), b = readInterface(carried, {});
+  EXPECT_EQ(a.capabilities, b.capabilities);
+  EXPECT_EQ(a.workGroupSize, b.workGroupSize);
+  EXPECT_EQ(a.pushConstantBytes, b.pushConstantBytes);
+  EXPECT_GT(b.specialisationDefaults.size(), 15u);  // unused ones are gone
+  for (const auto& [number, value] : b.specialisationDefaults) {
+    ASSERT_TRUE(a.specialisationDefaults.contains(number)) << number;
+    EXPECT_EQ(a.specialisationDefaults.at(number), value) << number;
+  }
+  ASSERT_EQ(a.bindings.size(), b.bindings.size());
+  for (std::size_t i = 0; i < a.bindings.size(); ++i) {
+    EXPECT_EQ(a.bindings[i].number, b.bindings[i].number);
+    EXPECT_EQ(a.bindings[i].kind, b.bindings[i].kind);
+  }
 }
 
 TEST(CarriedTest, AllAreValidAndUnknownOnesAreRefused) {
