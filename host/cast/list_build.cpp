@@ -164,7 +164,8 @@ void ListBuilder::collect(const Scene& scene, const EyeFrame& frame, RealType ty
   const std::size_t most = hiding ? mostInRound(solids) : 0;
   const bool oneRound = most == solids;
   patches_.resize(hiding && !oneRound ? wideLimits_.size() : 0);
-  if (hiding && !oneRound) tileLimits_.start(static_cast<std::size_t>(grid_.across), static_cast<std::size_t>(grid_.down));
+  if (hiding && !oneRound)
+    tileLimits_.start(static_cast<std::size_t>(grid_.across), static_cast<std::size_t>(grid_.down));
   if (most > discRoom_) discs_ = std::make_unique_for_overwrite<SmallDisc[]>(most), discRoom_ = most;
   const ListPacks packs{world, type, eyeForms, eye};
   const DepthSlices slices = slicesOf(sample);

@@ -162,13 +162,13 @@ constexpr int tileShift = std::countr_zero(static_cast<unsigned>(ListGrid::tile)
 bool ListLayout::Share::addAnywhere(std::size_t kind, const std::byte* record, const Footprint& seen) {
   const ListGrid& grid = layout_->grid_;
   return anywhere_.add(kind, record, seen, tileShift, static_cast<std::size_t>(grid.across),
-                              static_cast<std::size_t>(grid.down), nullptr);
+                       static_cast<std::size_t>(grid.down), nullptr);
 }
 bool ListLayout::Share::addWide(std::size_t kind, const std::byte* record, const Footprint& seen,
                                 const TileLimits& limits) {
   const ListGrid& grid = layout_->grid_;
   return wide_.add(kind, record, seen, tileShift + layout_->shift_, static_cast<std::size_t>(grid.wideAcross()),
-                         static_cast<std::size_t>(grid.wideDown()), &limits);
+                   static_cast<std::size_t>(grid.wideDown()), &limits);
 }
 
 void ListLayout::Share::finish(bool wideOnes) {

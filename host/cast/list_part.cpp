@@ -121,8 +121,7 @@ void ListPart::lookForSieve(const Solids& solids, std::size_t from, std::size_t 
 void ListPart::look(std::size_t from, std::size_t to, Footprints& footprints, const ListPacks& packs,
                     ListLayout::Share& share) {
   auto packing = packingOf<ListHead>(packs, flags, [&](std::size_t kind, std::size_t bytes, const ListHead& head) {
-    return record(head.solid, bytes,
-                  [&](const std::byte* at) { return share.addAnywhere(kind, at, head.seen); });
+    return record(head.solid, bytes, [&](const std::byte* at) { return share.addAnywhere(kind, at, head.seen); });
   });
   forEachBlock(packs.world.solids, from, to, [&](const Stretch& block) {
     // Inlined, so that a footprint is put together where it is kept: to copy one waits for its own small stores.

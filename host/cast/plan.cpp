@@ -24,8 +24,8 @@ double solidNs(const Program& p) {
   if (p.method == Method::fast) return 0.30;
   return p.real == RealType::f64 ? 0.53 : p.real == RealType::df32 ? 10 : 0.5;
 }
-constexpr double freeRays = 2.5;    // orthographic cameras: times the above
-constexpr double bakedPart = 0.45;  // of a ray from a uniform buffer
+constexpr double freeRays = 2.5;                    // orthographic cameras: times the above
+constexpr double bakedPart = 0.45;                  // of a ray from a uniform buffer
 constexpr double wideFast = 0.55, wideExact = 0.8;  // the same with more rays an invocation, by addresses
 // More rays an invocation save about 1.5 ns a ray (fast) and take 20 to 45 ms longer to compile.
 constexpr double fewestWide = 2e7;
@@ -102,7 +102,10 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
     }
     case Plan::uniform:
       cost.prepare_ms = flatten + pipelineMs;
-      cost.rays_ms = rays * perSolid * each * (!readsByAddress(f) ? 1 : f.program.method == Method::fast ? wideFast : wideExact);
+      cost.rays_ms = rays * perSolid * each *
+                     (!readsByAddress(f)                 ? 1
+                      : f.program.method == Method::fast ? wideFast
+                                                         : wideExact);
       if (bytes > f.uniformRange)
         cost.impossible =
             std::to_string(bytes) + " bytes of records, at most " + std::to_string(f.uniformRange) + " fit";

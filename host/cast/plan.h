@@ -18,7 +18,7 @@ struct PlanFacts {
   int pictures = 1;     // that the caster is made for
   bool moving = false;  // the camera or the scene changes from picture to picture
   bool llvmpipe = false;
-  bool addresses = false;  // shaders can read buffers by their addresses, and that pays
+  bool addresses = false;                          // shaders can read buffers by their addresses, and that pays
   std::size_t uniformRange = 0, storageRange = 0;  // bytes that one buffer may have
 };
 

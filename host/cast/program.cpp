@@ -35,8 +35,7 @@ gpu::Defines Program::defines() const {
   if (job == Job::lists) d.emplace_back("STORAGE", storage ? "3" : "2");
   else d.emplace_back("STORAGE", storage ? "1" : "0"), d.emplace_back("INDEX", index ? "1" : "0");
   if (job != Job::rays) d.emplace_back("CAMERA", std::to_string(camera));
-  if (job == Job::pixels)
-    d.emplace_back("HITS", hits ? "1" : "0"), d.emplace_back("ADDRESS", address ? "1" : "0");
+  if (job == Job::pixels) d.emplace_back("HITS", hits ? "1" : "0"), d.emplace_back("ADDRESS", address ? "1" : "0");
   return d;
 }
 

@@ -180,8 +180,10 @@ Buffer Device::makeBuffer(std::size_t bytes, BufferUse use) {
   for (std::uint32_t type : memoryTypes(core, needs.memoryTypeBits, use)) {
     const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
                                           .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
-    const VkMemoryAllocateInfo allocation{
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .pNext = addressed ? &flags : nullptr, .allocationSize = needs.size, .memoryTypeIndex = type};
+    const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                          .pNext = addressed ? &flags : nullptr,
+                                          .allocationSize = needs.size,
+                                          .memoryTypeIndex = type};
     result = core.vkAllocateMemory(core.device, &allocation, nullptr, &memory);
     if (result == VK_SUCCESS) break;
   }

@@ -93,9 +93,9 @@ TEST_F(ShadersTest, DefinesReachTheShader) {
 
 TEST(CarriedTest, BuildTimeGivesWhatRunTimeDoesWithFunctionsInlined) {
   const fs::path shaders = SOLIDCAST_SOURCE_DIR "/shaders";
-  const auto module = compile(shaders / "pixels.comp",
-                              {{"METHOD", "2"}, {"ARITHMETIC", "1"}, {"CAMERA", "0"}, {"STORAGE", "0"}, {"HITS", "0"}},
-                              {shaders});
+  const auto module =
+      compile(shaders / "pixels.comp",
+              {{"METHOD", "2"}, {"ARITHMETIC", "1"}, {"CAMERA", "0"}, {"STORAGE", "0"}, {"HITS", "0"}}, {shaders});
   const auto carried = carriedModule("pixels_exact64_perspective");
   const std::string later = disassemble(module.spirv), built = disassemble(carried);
   EXPECT_TRUE(contains(later, "OpFunctionCall"));
