@@ -63,6 +63,8 @@ TEST_P(AddressTest, NorWithSamplesPartsAndTies) {
   part.samples = 2;
   part.crop = {13, 9, 50, 37};
   expectSamePicture(scene, part, "2x2 samples, a part of the picture");
+  scene.integrator = RayCastingDistIntegrator{{1, 0.2, 0}, 4, {0.2, 1, 0}, 12};  // with colours in the view's rows
+  expectSamePicture(scene, job(), "castingdist");
   scene.world.solids = {};
   scene.world.solids.push_back({"", InfinitePlane{{0, 0, 0}, {0, 0, 1}}});
   scene.world.solids.push_back({"", Quad{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}});
