@@ -1,8 +1,10 @@
 // Where rows of numbers come from. STORAGE 0: uniform buffers (llvmpipe loads them once for all lanes: 1.7 times
 // faster), STORAGE 1: storage buffers, for scenes beyond the uniform range; STORAGE 2: a texel buffer, where each lane
-// loads rows of its own; STORAGE 3: a storage buffer for the same. ADDRESS 1, with STORAGE 0: by the buffers' addresses. llvmpipe
-// compares every number of a uniform buffer with the buffer's size and branches around the load, and keeps little in
-// registers across branches; from an address it loads the number, once for all lanes. A row is four `real`; a double-float row is two vec4, high parts first.
+// loads rows of its own; STORAGE 3: a storage buffer for the same. A row is four `real`; a double-float row is two vec4,
+// high parts first.
+// ADDRESS 1, with STORAGE 0: by the buffers' addresses. llvmpipe compares every number of a uniform buffer with the
+// buffer's size and branches around the load, and keeps little in registers across branches; from an address it loads
+// the number, once for all lanes.
 #ifndef SOLIDCAST_RECORDS
 #define SOLIDCAST_RECORDS
 #include "numeric.glsl"
