@@ -34,7 +34,9 @@ layout(constant_id = 36) const bool GREY = false;  // rgb8: a byte a pixel, in t
 
 #if !ADDRESS
 layout(set = 0, binding = 2, std140) uniform View { RAW view[VIEW_RAWS]; };
+#if !TURNS
 real4 viewRow(uint row) { return ROW(view, row); }
+#endif
 #endif
 
 layout(set = 0, binding = 3, std430) buffer Image { uvec4 image[]; };
@@ -52,9 +54,11 @@ layout(set = 0, binding = 5, std430) readonly buffer Angles { RAW angles[]; };
 #endif
 
 // --- rays -----------------------------------------------------------------------------------------------------------
+uint gridColumns = portion.wholeWidth * SAMPLES, gridRows = portion.wholeHeight * SAMPLES;  // of the whole image's samples
+
 // Place of a sample on the whole image's grid of samples, from its middle: exact in fp32 up to 2^23 samples a side.
-float gridX(uint column) { return 0.5 * float(int(2u * column + 1u) - int(portion.wholeWidth * SAMPLES)); }
-float gridY(uint row) { return 0.5 * float(int(portion.wholeHeight * SAMPLES) - int(2u * row + 1u)); }
+float gridX(uint column) { return 0.5 * float(int(2u * column + 1u) - int(gridColumns)); }
+float gridY(uint row) { return 0.5 * float(int(gridRows) - int(2u * row + 1u)); }
 
 struct CameraRay {
   real3 origin, direction;  // orthographic: origin relative to the camera's centre, world axes; else camera axes
@@ -80,9 +84,8 @@ CameraRay cameraRay(uint column, uint row) {
 #if CAMERA == 0
   ray.direction = real3(mul(number(gridX(column)), step.x), mul(number(gridY(row)), step.y), number(-1.0));
 #elif CAMERA == 1
-  uint columns = portion.wholeWidth * SAMPLES, lines = portion.wholeHeight * SAMPLES;  // beyond them: buffer's margin
-  real4 lon = ROW(angles, column < columns ? column : columns - 1u);
-  real4 lat = ROW(angles, columns + (row < lines ? row : lines - 1u));
+  real4 lon = ROW(angles, column < gridColumns ? column : gridColumns - 1u);  // beyond them: buffer's margin
+  real4 lat = ROW(angles, gridColumns + (row < gridRows ? row : gridRows - 1u));
   ray.direction = real3(mul(lat.x, lon.y), lat.y, negate(mul(lat.x, lon.x)));
 #else
   ray.origin = combine(mul(number(gridX(column)), step.x), mul(number(gridY(row)), step.y), number(0.0));

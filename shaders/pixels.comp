@@ -14,6 +14,8 @@
 //   CAMERA     0 perspective, 1 environment, 2 orthographic
 //   STORAGE    0 records in uniform buffers, 1 in storage buffers and searched in portions
 //   ADDRESS    1, with STORAGE 0: records and view by their addresses (records.glsl)
+//   TURNS      1, with STORAGE 0: an invocation's rays one after the other, in a loop, instead of all at once: a fraction of the
+//              code, so that the pipeline is made in a third of the time
 //   HITS       1: also normals, local coordinates and hit points
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -46,13 +48,30 @@ layout(push_constant) uniform Portion {
 #endif
 } portion;
 
-#if ADDRESS
+#if TURNS
+// Under the loop llvmpipe would load lane by lane, so that all rows are loaded before it.
+#if FREE
+real4 keptRecords[WORLD_RAWS], keptView[VIEW_RAWS];
+real4 worldRecord(uint row) { return keptRecords[row]; }
+#define KEEP_RECORDS for (uint i = 0u; i < WORLD_RAWS; ++i) keptRecords[i] = ROW(worldRecords, i)
+#else
+real4 keptRecords[RECORD_RAWS], keptView[VIEW_RAWS];
+real4 record(uint row) { return keptRecords[row]; }
+#define KEEP_RECORDS for (uint i = 0u; i < RECORD_RAWS; ++i) keptRecords[i] = ROW(records, i)
+#endif
+real4 viewRow(uint row) { return keptView[row]; }
+#elif ADDRESS
 real4 viewRow(uint row) { return ROW(portion.view.rows, row); }
 real4 record(uint row) { return ROW(portion.records.rows, row); }
 real4 worldRecord(uint row) { return ROW(portion.records.rows, row); }
 #endif
 
+#if TURNS
+const uint RAYS = 4u, AT_ONCE = 1u;
+#else
 layout(constant_id = 31) const uint RAYS = 4u;  // of an invocation: 4, 8 or 16
+#define AT_ONCE RAYS
+#endif
 #define STORED RAYS
 #include "picture.glsl"
 
@@ -99,19 +118,19 @@ Found kept(Kept k) {
 #endif
 
 // --- search -------------------------------------------------------------------------------------------------------
-void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAYS]) {
-  Found best[RAYS];
+void search(const uint column[AT_ONCE], uint row, uint pixel, out Result result[AT_ONCE]) {
+  Found best[AT_ONCE];
 #if METHOD == 0
-  vec3 origin[RAYS], direction[RAYS];
+  vec3 origin[AT_ONCE], direction[AT_ONCE];
 #elif FREE
-  FreeRay ray[RAYS];
+  FreeRay ray[AT_ONCE];
 #else
-  EyeRay ray[RAYS];
+  EyeRay ray[AT_ONCE];
 #endif
 #if METHOD != 0
-  real length[RAYS];  // of the direction
+  real length[AT_ONCE];  // of the direction
 #endif
-  UNROLL for (uint k = 0u; k < RAYS; ++k) {
+  UNROLL for (uint k = 0u; k < AT_ONCE; ++k) {
     CameraRay camera = cameraRay(column[k], row);
 #if METHOD == 0
     vec3 eye = vec3(viewRow(1u).w, viewRow(2u).w, viewRow(3u).w);
@@ -162,7 +181,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
   if (KIND##_COUNT > 0u) {                                                    \
     uint at = FIRST_ROW(NUMBER, next);                                        \
     for (uint i = 0u; i < COUNT(NUMBER, KIND); ++i) {                         \
-      UNROLL for (uint k = 0u; k < RAYS; ++k) TEST(kind, at);                 \
+      UNROLL for (uint k = 0u; k < AT_ONCE; ++k) TEST(kind, at);                 \
       at += ROWS(EYE_ROWS, WORLD_ROWS);                                       \
     }                                                                         \
     next = at;                                                                \
@@ -170,7 +189,7 @@ void search(const uint column[RAYS], uint row, uint pixel, out Result result[RAY
 #include "solids.def"
 #undef SOLID
 
-  UNROLL for (uint k = 0u; k < RAYS; ++k) {
+  UNROLL for (uint k = 0u; k < AT_ONCE; ++k) {
 #if STORAGE
     if ((portion.stage & 2u) == 0u) state[pixel + k] = keep(best[k]);
 #endif
@@ -209,10 +228,22 @@ void main() {
   y += portion.tileY;
 #endif
   uint pixel = y * portion.stride + x;
-  uint column[RAYS];
+  uint column[RAYS], row = (portion.firstY + y) * SAMPLES + portion.sampleY;
   UNROLL for (uint k = 0u; k < RAYS; ++k) column[k] = (portion.firstX + x + k) * SAMPLES + portion.sampleX;
   Result result[RAYS];
-  search(column, (portion.firstY + y) * SAMPLES + portion.sampleY, pixel, result);
+#if TURNS
+  KEEP_RECORDS;
+  for (uint i = 0u; i < VIEW_RAWS; ++i) keptView[i] = ROW(view, i);
+  [[dont_unroll]] for (uint k = 0u; k < RAYS; ++k) {
+    uint one[1] = uint[1](column[0] + k * SAMPLES);
+    Result found[1];
+    search(one, row, pixel, found);
+    UNROLL for (uint j = 0u; j < RAYS; ++j)
+      if (j == k) result[j] = found[0];
+  }
+#else
+  search(column, row, pixel, result);
+#endif
 #if STORAGE
   if ((portion.stage & 2u) == 0u) return;
 #endif

@@ -31,6 +31,7 @@ constexpr double wideFast = 0.55, wideExact = 0.8;  // the same with more rays a
 constexpr double fewestWide = 2e7;
 constexpr double storageTimes = 1.5;    // the same
 constexpr double pipelineMs = 15;       // from the driver's cache, as most are
+constexpr double turnsPipelineMs = 5;   // the same with an invocation's rays in turns
 constexpr double listsPipelineMs = 30;  // the same for sixteen rays an invocation
 constexpr double flattenUs = 4;         // a solid, in binary128
 constexpr double indexUs = 0.5;         // a solid, on two threads
@@ -47,13 +48,18 @@ std::uint32_t total(const PlanFacts& f) {
   return n;
 }
 
-/// Records by addresses, with loops unrolled and many rays an invocation: where there is such a module (shaders/CMakeLists.txt).
-bool readsByAddress(const PlanFacts& f) {
+/// Whether there are modules with loops unrolled (shaders/CMakeLists.txt), for llvmpipe and so few solids.
+bool hasUnrolled(const PlanFacts& f) {
   const Program& p = f.program;
-  return f.addresses && p.job == Job::pixels && p.method != Method::naive && !p.hits &&
-         (p.method == Method::fast || p.real == RealType::f64) && total(f) <= mostWide &&
-         f.pixels * f.pictures >= fewestWide;
+  return f.llvmpipe && p.job == Job::pixels && p.method != Method::naive && !p.hits &&
+         (p.method == Method::fast || p.real == RealType::f64) && total(f) <= mostWide;
 }
+/// Many rays an invocation, records by addresses.
+bool readsByAddress(const PlanFacts& f) {
+  return hasUnrolled(f) && f.addresses && f.pixels * f.pictures >= fewestWide;
+}
+/// An invocation's rays in turns.
+bool takesTurns(const PlanFacts& f) { return hasUnrolled(f) && !readsByAddress(f); }
 
 /// One free ray through an index, wall ns on two threads: steps grow with the logarithm of the number of solids, and what
 /// they load leaves one cache after the other. Solids without bounds are all tried.
@@ -101,7 +107,7 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
       break;
     }
     case Plan::uniform:
-      cost.prepare_ms = flatten + pipelineMs;
+      cost.prepare_ms = flatten + (takesTurns(f) ? turnsPipelineMs : pipelineMs);
       cost.rays_ms = rays * perSolid * each *
                      (!readsByAddress(f)                 ? 1
                       : f.program.method == Method::fast ? wideFast
@@ -187,6 +193,7 @@ PlanChoice choosePlan(const PlanFacts& facts, Plan asked) {
   PlanChoice choice;
   choice.plan = best.plan;
   choice.wide = best.plan == Plan::baked || (best.plan == Plan::uniform && readsByAddress(facts));
+  choice.turns = best.plan == Plan::uniform && takesTurns(facts);
   choice.bakingMs = bakingMs(facts.program.real, total(facts));
   choice.bakeLater = asked == Plan::automatic && best.plan == Plan::uniform && !facts.moving &&
                      costOf(Plan::baked, facts).impossible.empty();
@@ -207,6 +214,7 @@ std::vector<std::string> planLines(const PlanFacts& facts, const PlanChoice& cho
     lines.push_back(line);
   }
   if (choice.wide) lines.push_back("many rays an invocation: so many rays repay the longer compilation");
+  if (choice.turns) lines.push_back("an invocation's rays in turns: the least to compile");
   if (choice.bakeLater)
     lines.push_back("baked once dispatches have taken " + number(choice.bakingMs) + " ms, should it come to that");
   return lines;

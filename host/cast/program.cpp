@@ -25,6 +25,7 @@ std::string Program::moduleName() const {
   if (job != Job::rays) name += std::string("_") + cameras[camera];
   if (storage) name += index ? "_index" : "_storage";
   if (address) name += "_address";
+  if (turns) name += "_turns";
   if (job == Job::pixels && hits) name += "_hits";
   return name;
 }
@@ -35,7 +36,11 @@ gpu::Defines Program::defines() const {
   if (job == Job::lists) d.emplace_back("STORAGE", storage ? "3" : "2");
   else d.emplace_back("STORAGE", storage ? "1" : "0"), d.emplace_back("INDEX", index ? "1" : "0");
   if (job != Job::rays) d.emplace_back("CAMERA", std::to_string(camera));
-  if (job == Job::pixels) d.emplace_back("HITS", hits ? "1" : "0"), d.emplace_back("ADDRESS", address ? "1" : "0");
+  if (job == Job::pixels) {
+    d.emplace_back("HITS", hits ? "1" : "0");
+    d.emplace_back("ADDRESS", address ? "1" : "0");
+    d.emplace_back("TURNS", turns ? "1" : "0");
+  }
   return d;
 }
 
