@@ -17,10 +17,17 @@ endif()
 
 # What drivers would have to do each time a pipeline is made: functions put where they are called, and locals that only carry
 # a value from one line to the next left out. No arithmetic is touched. (lavapipe makes a pipeline in half the time.)
+#
+# Where an invocation's rays take turns, also: loops over one ray, and all state in registers, as host/gpu/unroll.cpp needs it.
+set(passes "")
+if(DEFINES MATCHES "TURNS=1")
+  set(passes --ssa-rewrite --loop-unroll --scalar-replacement=0 --ssa-rewrite --merge-blocks --redundancy-elimination --vector-dce
+             --eliminate-dead-code-aggressive)
+endif()
 execute_process(COMMAND ${SPIRV_OPT} --target-env=vulkan1.1 --merge-return --inline-entry-points-exhaustive
                         --eliminate-dead-functions --private-to-local --convert-local-access-chains
                         --eliminate-local-single-block --eliminate-local-single-store --eliminate-dead-code-aggressive
-                        ${SPIRV} -o ${SPIRV}
+                        ${passes} ${SPIRV} -o ${SPIRV}
                 RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(result)
   message(FATAL_ERROR "${GLSL}: error: module ${NAME} cannot be optimised: ${output}")

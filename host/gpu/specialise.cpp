@@ -13,67 +13,29 @@
 #include <unordered_set>
 #include <utility>
 
+#include "host/gpu/parsed_module.h"
 #include "host/gpu/shaders.h"
 
 namespace solidcast::gpu {
 namespace {
 
-struct Instruction {
-  spv::Op op;
-  std::vector<std::uint32_t> words;  // with the first, which holds length and opcode
-  std::uint32_t at(std::size_t i) const { return words[i]; }
-};
-
-Instruction make(spv::Op op, std::vector<std::uint32_t> operands) {
-  operands.insert(operands.begin(), static_cast<std::uint32_t>(operands.size() + 1) << 16 | op);
-  return {op, std::move(operands)};
-}
 void rename(Instruction& i, spv::Op op) {
   i.op = op;
   i.words[0] = (i.words[0] & 0xffff0000u) | op;
 }
 
-struct Block {
-  std::uint32_t label = 0;
-  std::vector<Instruction> code;  // after the label, terminator last
-};
-struct Function {
-  std::vector<Instruction> head;  // OpFunction and parameters
-  std::vector<Block> blocks;
-  std::uint32_t id() const { return head[0].at(2); }
-};
-
-class ParsedModule {
+class Specialiser {
  public:
-  explicit ParsedModule(std::span<const std::uint32_t> spirv) : header_(spirv.begin(), spirv.begin() + 5) {
-    Function* function = nullptr;
-    for (std::size_t i = 5; i < spirv.size();) {
-      std::size_t length = spirv[i] >> 16;
-      Instruction in{static_cast<spv::Op>(spirv[i] & 0xffff), {spirv.begin() + i, spirv.begin() + i + length}};
-      i += length;
-      if (in.op == spv::OpFunction) function = &functions_.emplace_back();
-      if (!function) {
-        globals_.push_back(std::move(in));
-      } else if (in.op == spv::OpFunctionEnd) {
-        function = nullptr;
-      } else if (in.op == spv::OpLabel) {
-        function->blocks.push_back({in.at(1), {}});
-      } else if (function->blocks.empty()) {
-        function->head.push_back(std::move(in));
-      } else {
-        function->blocks.back().code.push_back(std::move(in));
-      }
-    }
-  }
+  explicit Specialiser(std::span<const std::uint32_t> spirv) : module_(spirv) {}
 
   void setConstants(const std::unordered_map<std::uint32_t, std::uint32_t>& values) {
     std::unordered_map<std::uint32_t, std::uint32_t> specIds;  // result id -> constant_id
-    std::erase_if(globals_, [&](const Instruction& in) {
+    std::erase_if(module_.globals, [&](const Instruction& in) {
       bool spec = in.op == spv::OpDecorate && in.at(2) == spv::DecorationSpecId;
       if (spec) specIds[in.at(1)] = in.at(3);
       return spec;
     });
-    for (Instruction& in : globals_) {
+    for (Instruction& in : module_.globals) {
       auto given = [&]() -> std::optional<std::uint32_t> {
         auto id = specIds.find(in.at(2));
         auto value = id == specIds.end() ? values.end() : values.find(id->second);
@@ -113,30 +75,23 @@ class ParsedModule {
     }
   }
 
-  void dropUnreachable() {
-    for (Function& function : functions_) {
+  void decideBranches() {
+    for (Function& function : module_.functions) {
       for (Block& block : function.blocks) decideBranch(block);
       keepReachableBlocks(function);
     }
+  }
+
+  /// Functions, types, constants, variables and names that nothing needs any more.
+  void dropUnreachable() {
     keepReachableFunctions();
     keepUsedGlobals();
     dropNamesOfNothing();
   }
 
-  std::vector<std::uint32_t> words() const {
-    std::vector<std::uint32_t> out = header_;
-    auto put = [&](const Instruction& in) { out.insert(out.end(), in.words.begin(), in.words.end()); };
-    for (const Instruction& in : globals_) put(in);
-    for (const Function& function : functions_) {
-      for (const Instruction& in : function.head) put(in);
-      for (const Block& block : function.blocks) {
-        put(make(spv::OpLabel, {block.label}));
-        for (const Instruction& in : block.code) put(in);
-      }
-      put(make(spv::OpFunctionEnd, {}));
-    }
-    return out;
-  }
+  void unroll() { unrollLoops(module_, known_); }
+
+  std::vector<std::uint32_t> words() const { return module_.words(); }
 
  private:
   std::optional<std::uint32_t> value(std::uint32_t id) const {
@@ -220,18 +175,6 @@ class ParsedModule {
     block.code.push_back(make(spv::OpBranch, {target}));
   }
 
-  static std::vector<std::uint32_t> successors(const Block& block) {
-    std::vector<std::uint32_t> to;
-    const Instruction& end = block.code.back();
-    if (end.op == spv::OpBranch) to = {end.at(1)};
-    if (end.op == spv::OpBranchConditional) to = {end.at(2), end.at(3)};
-    if (end.op == spv::OpSwitch) {
-      to = {end.at(2)};
-      for (std::size_t k = 4; k < end.words.size(); k += 2) to.push_back(end.at(k));
-    }
-    return to;
-  }
-
   static void keepReachableBlocks(Function& function) {
     if (function.blocks.empty()) return;
     std::unordered_map<std::uint32_t, const Block*> byLabel;
@@ -266,10 +209,10 @@ class ParsedModule {
 
   void keepReachableFunctions() {
     std::unordered_map<std::uint32_t, const Function*> byId;
-    for (const Function& function : functions_) byId[function.id()] = &function;
+    for (const Function& function : module_.functions) byId[function.id()] = &function;
     std::unordered_set<std::uint32_t> kept;
     std::vector<std::uint32_t> open;
-    for (const Instruction& in : globals_)
+    for (const Instruction& in : module_.globals)
       if (in.op == spv::OpEntryPoint) open.push_back(in.at(2));
     while (!open.empty()) {
       std::uint32_t id = open.back();
@@ -279,7 +222,7 @@ class ParsedModule {
         for (const Instruction& in : block.code)
           if (in.op == spv::OpFunctionCall) open.push_back(in.at(3));
     }
-    std::erase_if(functions_, [&](const Function& function) { return !kept.contains(function.id()); });
+    std::erase_if(module_.functions, [&](const Function& function) { return !kept.contains(function.id()); });
   }
 
   /// Types, constants and variables (buffers among them) that nothing names any more. (Every word counts as a name: a
@@ -287,13 +230,13 @@ class ParsedModule {
   void keepUsedGlobals() {
     std::unordered_set<std::uint32_t> named;
     auto name = [&](const Instruction& in) { named.insert(in.words.begin() + 1, in.words.end()); };
-    for (const Function& function : functions_) {
+    for (const Function& function : module_.functions) {
       for (const Instruction& in : function.head) name(in);
       for (const Block& block : function.blocks)
         for (const Instruction& in : block.code) name(in);
     }
     std::vector<Instruction> kept;
-    for (auto in = globals_.rbegin(); in != globals_.rend(); ++in) {  // uses stand after definitions
+    for (auto in = module_.globals.rbegin(); in != module_.globals.rend(); ++in) {  // uses stand after definitions
       bool result = false, type = false;
       spv::HasResultAndType(in->op, &result, &type);
       if (result && in->op != spv::OpExtInstImport && in->op != spv::OpString && !named.contains(in->at(type ? 2 : 1)))
@@ -301,7 +244,7 @@ class ParsedModule {
       if (!isAnnotation(*in)) name(*in);
       kept.push_back(std::move(*in));
     }
-    globals_.assign(std::make_move_iterator(kept.rbegin()), std::make_move_iterator(kept.rend()));
+    module_.globals.assign(std::make_move_iterator(kept.rbegin()), std::make_move_iterator(kept.rend()));
   }
 
   void dropNamesOfNothing() {
@@ -311,26 +254,25 @@ class ParsedModule {
       spv::HasResultAndType(in.op, &result, &type);
       if (result) defined.insert(in.at(type ? 2 : 1));
     };
-    for (const Instruction& in : globals_)
+    for (const Instruction& in : module_.globals)
       if (!isAnnotation(in)) define(in);
-    for (const Function& function : functions_) {
+    for (const Function& function : module_.functions) {
       for (const Instruction& in : function.head) define(in);
       for (const Block& block : function.blocks) {
         defined.insert(block.label);
         for (const Instruction& in : block.code) define(in);
       }
     }
-    std::erase_if(globals_, [&](const Instruction& in) { return isAnnotation(in) && !defined.contains(in.at(1)); });
+    std::erase_if(module_.globals,
+                  [&](const Instruction& in) { return isAnnotation(in) && !defined.contains(in.at(1)); });
   }
   static bool isAnnotation(const Instruction& in) {
     return in.op == spv::OpName || in.op == spv::OpMemberName || in.op == spv::OpDecorate ||
            in.op == spv::OpMemberDecorate;
   }
 
-  std::vector<std::uint32_t> header_;
-  std::vector<Instruction> globals_;
-  std::vector<Function> functions_;
-  std::unordered_map<std::uint32_t, std::uint32_t> known_;  // constants of 32 bits and bools by id
+  ParsedModule module_;
+  Known known_;
   std::uint32_t boolType_ = 0;
 };
 
@@ -338,8 +280,10 @@ class ParsedModule {
 
 std::vector<std::uint32_t> specialised(std::span<const std::uint32_t> spirv,
                                        const std::vector<std::pair<std::uint32_t, std::uint32_t>>& constants) {
-  ParsedModule module(spirv);
+  Specialiser module(spirv);
   module.setConstants({constants.begin(), constants.end()});
+  module.decideBranches();
+  module.unroll();
   module.dropUnreachable();
   return module.words();
 }

@@ -8,9 +8,12 @@
 
 namespace solidcast::watch {
 
+class HttpServer;
+
 class Server {
  public:
-  /// Listens on 127.0.0.1 and this port; 0: any free one. Throws Error(Exit::usage) where it cannot.
+  /// Listens on 127.0.0.1 and this port; 0: any free one. Throws Error(Exit::usage) where it cannot, or where the module
+  /// of http/ is not found.
   Server(Board& board, int port);
   /// Ends the board, and waits for requests at work.
   ~Server();
@@ -19,8 +22,9 @@ class Server {
   std::string url() const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Board& board_;
+  Api api_;
+  std::unique_ptr<HttpServer> http_;
 };
 
 }  // namespace solidcast::watch

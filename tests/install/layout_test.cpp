@@ -12,7 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
-const Names program{"bin/solidcast", "share/man/man1/solidcast.1", "share/bash-completion/completions/solidcast"};
+const Names program{"bin/solidcast", INSTALL_LIBRARIES "/solidcast/solidcast_http.so", "share/man/man1/solidcast.1",
+                    "share/bash-completion/completions/solidcast"};
 
 Names development() {
   Names names;
