@@ -18,11 +18,12 @@ endif()
 # What drivers would have to do each time a pipeline is made: functions put where they are called, and locals that only carry
 # a value from one line to the next left out. No arithmetic is touched. (lavapipe makes a pipeline in half the time.)
 #
-# Where an invocation's rays take turns, also: loops over one ray, and all state in registers, as host/gpu/unroll.cpp needs it.
+# Where an invocation's rays take turns, also: loops over those of a turn, and all state in registers, as
+# host/gpu/unroll.cpp needs it.
 set(passes "")
-if(DEFINES MATCHES "TURNS=1")
-  set(passes --ssa-rewrite --loop-unroll --scalar-replacement=0 --ssa-rewrite --merge-blocks --redundancy-elimination --vector-dce
-             --eliminate-dead-code-aggressive)
+if(DEFINES MATCHES "TURN=")
+  set(passes --ssa-rewrite --loop-unroll --ccp --scalar-replacement=0 --ssa-rewrite --merge-blocks --redundancy-elimination
+             --vector-dce --eliminate-dead-code-aggressive)
 endif()
 execute_process(COMMAND ${SPIRV_OPT} --target-env=vulkan1.1 --merge-return --inline-entry-points-exhaustive
                         --eliminate-dead-functions --private-to-local --convert-local-access-chains

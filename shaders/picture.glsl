@@ -34,7 +34,7 @@ layout(constant_id = 36) const bool GREY = false;  // rgb8: a byte a pixel, in t
 
 #if !ADDRESS
 layout(set = 0, binding = 2, std140) uniform View { RAW view[VIEW_RAWS]; };
-#if !TURNS
+#if !TURN
 real4 viewRow(uint row) { return ROW(view, row); }
 #endif
 #endif
@@ -53,9 +53,15 @@ layout(set = 0, binding = 4, std430) buffer Doubts {  // rays for the second pas
 layout(set = 0, binding = 5, std430) readonly buffer Angles { RAW angles[]; };
 #endif
 
-// --- rays -----------------------------------------------------------------------------------------------------------
+// --- what all pixels share, loaded before any loop -------------------------------------------------------------------
 uint gridColumns = portion.wholeWidth * SAMPLES, gridRows = portion.wholeHeight * SAMPLES;  // of the whole image's samples
+uint planeSize = portion.stride * portion.rows / 4u;                                        // in fours of words
+bool otherSamples = SAMPLES > 1u && (portion.sampleX | portion.sampleY) != 0u;
+#ifdef EXACT
+uint capacity = doubtCapacity;
+#endif
 
+// --- rays -----------------------------------------------------------------------------------------------------------
 // Place of a sample on the whole image's grid of samples, from its middle: exact in fp32 up to 2^23 samples a side.
 float gridX(uint column) { return 0.5 * float(int(2u * column + 1u) - int(gridColumns)); }
 float gridY(uint row) { return 0.5 * float(int(gridRows) - int(2u * row + 1u)); }
@@ -147,8 +153,6 @@ uint level(float v) {
 }
 
 // --- storing --------------------------------------------------------------------------------------------------------
-uint planeSize() { return portion.stride * portion.rows / 4u; }
-
 // Stores this many neighbours of a row, the first of them at `pixel` of the planes, with their doubts. Gives the place in
 // the plane after the last one stored (of the first four of them).
 #ifndef STORED
@@ -157,10 +161,9 @@ uint planeSize() { return portion.stride * portion.rows / 4u; }
 #define EACH_FOUR UNROLL for (uint q = 0u; q < STORED / 4u; ++q)
 
 uint storeRow(uint pixel, inout Result result[STORED]) {
-  uint base = pixel / 4u, plane = planeSize();
-  bool otherSamples = SAMPLES > 1u && (portion.sampleX | portion.sampleY) != 0u;
+  uint base = pixel / 4u;
 #ifdef EXACT
-  uint capacity = doubtCapacity, doubtful[(STORED + 7u) / 8u];
+  uint doubtful[(STORED + 7u) / 8u];
   UNROLL for (uint e = 0u; e < (STORED + 7u) / 8u; ++e) doubtful[e] = 0u;
 #endif
   vec3 colour[STORED];
@@ -191,7 +194,7 @@ uint storeRow(uint pixel, inout Result result[STORED]) {
     } else {
       EACH_FOUR image[base / 4u][base % 4u + q] = four[q];
     }
-    base += plane;
+    base += planeSize;
   } else if ((WANTED & RGB8) != 0u) {
     EACH_FOUR {
       uvec4 packed;
@@ -202,7 +205,7 @@ uint storeRow(uint pixel, inout Result result[STORED]) {
       }
       image[base + q] = packed;
     }
-    base += plane;
+    base += planeSize;
   }
   if ((WANTED & RADIANCE) != 0u) {
     for (int c = 0; c < 3; ++c) {
@@ -212,7 +215,7 @@ uint storeRow(uint pixel, inout Result result[STORED]) {
         if (otherSamples) sum += uintBitsToFloat(image[base + q]);
         image[base + q] = floatBitsToUint(sum);  // of all samples; the host divides
       }
-      base += plane;
+      base += planeSize;
     }
   }
   if ((WANTED & DISTANCE) != 0u) {
@@ -222,7 +225,7 @@ uint storeRow(uint pixel, inout Result result[STORED]) {
         t[k] = result[4u * q + k].hit ? result[4u * q + k].distance : uintBitsToFloat(0x7f800000u);
       image[base + q] = floatBitsToUint(t);
     }
-    base += plane;
+    base += planeSize;
   }
   if ((WANTED & SOLID_INDEX) != 0u) {
     EACH_FOUR {
@@ -231,7 +234,7 @@ uint storeRow(uint pixel, inout Result result[STORED]) {
         index[k] = result[4u * q + k].hit ? uint(result[4u * q + k].index) : 0xffffffffu;
       image[base + q] = index;
     }
-    base += plane;
+    base += planeSize;
   }
 #ifdef EXACT
   UNROLL for (uint e = 0u; e < (STORED + 7u) / 8u; ++e)

@@ -14,8 +14,8 @@
 //   CAMERA     0 perspective, 1 environment, 2 orthographic
 //   STORAGE    0 records in uniform buffers, 1 in storage buffers and searched in portions
 //   ADDRESS    1, with STORAGE 0: records and view by their addresses (records.glsl)
-//   TURNS      1, with STORAGE 0: an invocation's rays one after the other, in a loop, instead of all at once: a fraction of the
-//              code, so that the pipeline is made in a third of the time
+//   TURN       1 or 4, with STORAGE 0: so many rays of an invocation at a time, the others in a loop. Less code, so that the
+//              pipeline is made sooner (1) or runs slower (4) than with all at once
 //   HITS       1: also normals, local coordinates and hit points
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -48,7 +48,7 @@ layout(push_constant) uniform Portion {
 #endif
 } portion;
 
-#if TURNS
+#if TURN
 // Under the loop llvmpipe would load lane by lane, so that all rows are loaded before it.
 #if FREE
 real4 keptRecords[WORLD_RAWS], keptView[VIEW_RAWS];
@@ -66,13 +66,15 @@ real4 record(uint row) { return ROW(portion.records.rows, row); }
 real4 worldRecord(uint row) { return ROW(portion.records.rows, row); }
 #endif
 
-#if TURNS
-const uint RAYS = 4u, AT_ONCE = 1u;
+// RAYS: of an invocation
+#if TURN
+const uint RAYS = 16u;
+#define AT_ONCE TURN
 #else
-layout(constant_id = 31) const uint RAYS = 4u;  // of an invocation: 4, 8 or 16
+layout(constant_id = 31) const uint RAYS = 4u;  // 4, 8 or 16
 #define AT_ONCE RAYS
-#endif
 #define STORED RAYS
+#endif
 #include "picture.glsl"
 
 #if METHOD == 0
@@ -118,7 +120,7 @@ Found kept(Kept k) {
 #endif
 
 // --- search -------------------------------------------------------------------------------------------------------
-void search(const uint column[AT_ONCE], uint row, uint pixel, out Result result[AT_ONCE]) {
+void search(uint column, uint row, uint pixel, out Result result[AT_ONCE]) {
   Found best[AT_ONCE];
 #if METHOD == 0
   vec3 origin[AT_ONCE], direction[AT_ONCE];
@@ -131,7 +133,7 @@ void search(const uint column[AT_ONCE], uint row, uint pixel, out Result result[
   real length[AT_ONCE];  // of the direction
 #endif
   UNROLL for (uint k = 0u; k < AT_ONCE; ++k) {
-    CameraRay camera = cameraRay(column[k], row);
+    CameraRay camera = cameraRay(column + k * SAMPLES, row);
 #if METHOD == 0
     vec3 eye = vec3(viewRow(1u).w, viewRow(2u).w, viewRow(3u).w);
     precise vec3 from = eye + camera.origin;
@@ -228,22 +230,27 @@ void main() {
   y += portion.tileY;
 #endif
   uint pixel = y * portion.stride + x;
-  uint column[RAYS], row = (portion.firstY + y) * SAMPLES + portion.sampleY;
-  UNROLL for (uint k = 0u; k < RAYS; ++k) column[k] = (portion.firstX + x + k) * SAMPLES + portion.sampleX;
-  Result result[RAYS];
-#if TURNS
+  uint column = (portion.firstX + x) * SAMPLES + portion.sampleX, row = (portion.firstY + y) * SAMPLES + portion.sampleY;
+#if TURN
   KEEP_RECORDS;
   for (uint i = 0u; i < VIEW_RAWS; ++i) keptView[i] = ROW(view, i);
-  [[dont_unroll]] for (uint k = 0u; k < RAYS; ++k) {
-    uint one[1] = uint[1](column[0] + k * SAMPLES);
-    Result found[1];
-    search(one, row, pixel, found);
-    UNROLL for (uint j = 0u; j < RAYS; ++j)
-      if (j == k) result[j] = found[0];
+  [[dont_unroll]] for (uint q = 0u; q < RAYS / 4u; ++q) {
+    Result result[4];
+#if TURN == 1
+    [[dont_unroll]] for (uint k = 0u; k < 4u; ++k) {
+      Result one[1];
+      search(column + (4u * q + k) * SAMPLES, row, pixel, one);
+      UNROLL for (uint j = 0u; j < 4u; ++j)
+        if (j == k) result[j] = one[0];
+    }
+#else
+    search(column + 4u * q * SAMPLES, row, pixel, result);
+#endif
+    storeRow(pixel + 4u * q, result);
   }
 #else
+  Result result[RAYS];
   search(column, row, pixel, result);
-#endif
 #if STORAGE
   if ((portion.stage & 2u) == 0u) return;
 #endif
@@ -265,11 +272,12 @@ void main() {
         UNROLL for (uint k = 0u; k < 4u; ++k) v[k] = value[4u * q + k][c];       \
         image[base + q] = floatBitsToUint(v);                                    \
       }                                                                          \
-      base += planeSize();                                                       \
+      base += planeSize;                                                         \
     }                                                                            \
   }
   STORE(NORMAL, normal)
   STORE(LOCAL, local)
   STORE(POSITION, position)
+#endif
 #endif
 }

@@ -35,7 +35,7 @@ GroupSearch::GroupSearch(const PassJob& job, const Scene& scene, const PlanChoic
       asked_(choice.plan),
       bakeAtOnce_(choice.plan == Plan::baked),
       wide_(choice.wide),
-      turns_(choice.turns),
+      turn_(choice.turn),
       buffers_(8) {
   if (choice.plan == Plan::baked || choice.bakeLater) bakingCosts_ = choice.bakingMs;
   setScene(scene);
@@ -116,8 +116,8 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   solids_ = search.solids();
   const bool unrolled = !bakeAtOnce_ && !program_.storage && solids_ <= mostWide;
   program_.address = wide_ && unrolled;
-  program_.turns = turns_ && unrolled;
-  constants[rays] = raysOf(program_, solids_, wide_);
+  program_.turn = unrolled ? turn_ : 0;
+  constants[rays] = program_.turn > 0 ? 16 : raysOf(program_, solids_, wide_);
   const bool same = pipeline_ && constants == constants_ && !bakeAtOnce_;
   if (same) return;
   constants_ = std::move(constants);
@@ -150,7 +150,8 @@ void GroupSearch::bake() {
   for (std::uint32_t binding : {0u, 1u, 2u})  // world records by index of the hit stay a buffer
     if (!buffers_[binding].bytes().empty() && !(binding == 1 && program_.hits))
       contents[binding] = buffers_[binding].bytes();
-  program_.address = program_.turns = false;
+  program_.address = false;
+  program_.turn = 0;
   loadModule();
   constants_[rays] = raysOf(program_, solids_, true);
   usePipeline(gpu::baked(spirv_, contents));

@@ -36,7 +36,8 @@ class GroupSearch : public PixelSearch {
   Plan asked_;
   std::optional<double> bakingCosts_;  // ms; none: not possible, not wanted, or done
   bool bakeAtOnce_;
-  bool wide_, turns_;  // PlanChoice
+  bool wide_;         // PlanChoice
+  int turn_;          // the same
   double spent_ = 0;  // ms of dispatches so far, without the first
   bool warm_ = false;
   std::vector<SearchPortion> portions_;

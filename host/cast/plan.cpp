@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include "host/cast/plan.h"
 
 #include <algorithm>
@@ -27,11 +28,11 @@ double solidNs(const Program& p) {
 constexpr double freeRays = 2.5;                    // orthographic cameras: times the above
 constexpr double bakedPart = 0.45;                  // of a ray from a uniform buffer
 constexpr double wideFast = 0.55, wideExact = 0.8;  // the same with more rays an invocation, by addresses
-// More rays an invocation save about 1.5 ns a ray (fast) and take 20 to 45 ms longer to compile.
-constexpr double fewestWide = 2e7;
+// Wall ns a ray (fast) and ms of compilation: 2.95 and 4 with one ray at a time, 1.66 and 8.5 with four, 1.2 and 36 by addresses.
+constexpr double fewestFours = 3e6, fewestWide = 4e7;
 constexpr double storageTimes = 1.5;    // the same
 constexpr double pipelineMs = 15;       // from the driver's cache, as most are
-constexpr double turnsPipelineMs = 5;   // the same with an invocation's rays in turns
+constexpr double turnPipelineMs = 5;    // the same for one ray at a time
 constexpr double listsPipelineMs = 30;  // the same for sixteen rays an invocation
 constexpr double flattenUs = 4;         // a solid, in binary128
 constexpr double indexUs = 0.5;         // a solid, on two threads
@@ -56,10 +57,13 @@ bool hasUnrolled(const PlanFacts& f) {
 }
 /// Many rays an invocation, records by addresses.
 bool readsByAddress(const PlanFacts& f) {
-  return hasUnrolled(f) && f.addresses && f.pixels * f.pictures >= fewestWide;
+  return hasUnrolled(f) && f.addresses && f.pixels * f.pictures >= (getenv("FW") ? atof(getenv("FW")) : fewestWide);
 }
-/// An invocation's rays in turns.
-bool takesTurns(const PlanFacts& f) { return hasUnrolled(f) && !readsByAddress(f); }
+/// Program::turn.
+int turnOf(const PlanFacts& f) {
+  if (!hasUnrolled(f) || readsByAddress(f)) return 0;
+  return f.pixels * f.pictures < (getenv("FF") ? atof(getenv("FF")) : fewestFours) ? 1 : 4;
+}
 
 /// One free ray through an index, wall ns on two threads: steps grow with the logarithm of the number of solids, and what
 /// they load leaves one cache after the other. Solids without bounds are all tried.
@@ -107,7 +111,7 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
       break;
     }
     case Plan::uniform:
-      cost.prepare_ms = flatten + (takesTurns(f) ? turnsPipelineMs : pipelineMs);
+      cost.prepare_ms = flatten + (turnOf(f) == 1 ? turnPipelineMs : pipelineMs);
       cost.rays_ms = rays * perSolid * each *
                      (!readsByAddress(f)                 ? 1
                       : f.program.method == Method::fast ? wideFast
@@ -193,7 +197,7 @@ PlanChoice choosePlan(const PlanFacts& facts, Plan asked) {
   PlanChoice choice;
   choice.plan = best.plan;
   choice.wide = best.plan == Plan::baked || (best.plan == Plan::uniform && readsByAddress(facts));
-  choice.turns = best.plan == Plan::uniform && takesTurns(facts);
+  choice.turn = best.plan == Plan::uniform ? turnOf(facts) : 0;
   choice.bakingMs = bakingMs(facts.program.real, total(facts));
   choice.bakeLater = asked == Plan::automatic && best.plan == Plan::uniform && !facts.moving &&
                      costOf(Plan::baked, facts).impossible.empty();
@@ -214,7 +218,8 @@ std::vector<std::string> planLines(const PlanFacts& facts, const PlanChoice& cho
     lines.push_back(line);
   }
   if (choice.wide) lines.push_back("many rays an invocation: so many rays repay the longer compilation");
-  if (choice.turns) lines.push_back("an invocation's rays in turns: the least to compile");
+  if (choice.turn == 1) lines.push_back("an invocation's rays one at a time: so few do not repay more to compile");
+  if (choice.turn == 4) lines.push_back("an invocation's rays four at a time");
   if (choice.bakeLater)
     lines.push_back("baked once dispatches have taken " + number(choice.bakingMs) + " ms, should it come to that");
   return lines;

@@ -33,7 +33,7 @@ struct PlanChoice {
   Plan plan;
   // So many rays that more of them in one invocation, slower to compile, pay: with `baked`, and with `uniform` by addresses.
   bool wide = false;
-  bool turns = false;  // `uniform`: an invocation's rays one after the other, quick to compile
+  int turn = 0;  // `uniform`: Program::turn
   bool bakeLater = false;  // change over to `baked` once dispatches have taken bakingMs
   double bakingMs = 0;
   std::vector<PlanCost> costs;  // of all plans, the chosen one first

@@ -25,7 +25,7 @@ std::string Program::moduleName() const {
   if (job != Job::rays) name += std::string("_") + cameras[camera];
   if (storage) name += index ? "_index" : "_storage";
   if (address) name += "_address";
-  if (turns) name += "_turns";
+  if (turn > 0) name += "_turn" + std::to_string(turn);
   if (job == Job::pixels && hits) name += "_hits";
   return name;
 }
@@ -39,7 +39,7 @@ gpu::Defines Program::defines() const {
   if (job == Job::pixels) {
     d.emplace_back("HITS", hits ? "1" : "0");
     d.emplace_back("ADDRESS", address ? "1" : "0");
-    d.emplace_back("TURNS", turns ? "1" : "0");
+    d.emplace_back("TURN", std::to_string(turn));
   }
   return d;
 }

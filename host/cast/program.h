@@ -22,7 +22,7 @@ struct Program {
   bool storage = false;  // records in storage buffers, searched in portions
   bool index = false;    // searched by an index (index.h); storage too
   bool address = false;  // records and view by their addresses, not from uniform buffers
-  bool turns = false;    // an invocation's rays in a loop, one after the other
+  int turn = 0;          // so many of an invocation's rays at a time (1 or 4), the others in a loop; 0: all at once
   bool hits = false;     // normals, local coordinates and points from the shader
   bool eye() const { return job != Job::rays && method != Method::naive && camera != 2; }
 

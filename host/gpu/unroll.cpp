@@ -19,7 +19,23 @@
 namespace solidcast::gpu {
 namespace {
 
-using Ids = std::unordered_map<std::uint32_t, std::uint32_t>;
+/// What ids are called instead. They are small and dense, so that this is a table.
+class Names {
+ public:
+  void set(std::uint32_t id, std::uint32_t name) {
+    if (id >= of_.size()) of_.resize(2 * id);
+    if (of_[id] == 0) renamed_.push_back(id);
+    of_[id] = name;
+  }
+  std::uint32_t operator()(std::uint32_t id) const { return id < of_.size() && of_[id] != 0 ? of_[id] : id; }
+  void clear() {
+    for (std::uint32_t id : renamed_) of_[id] = 0;
+    renamed_.clear();
+  }
+
+ private:
+  std::vector<std::uint32_t> of_, renamed_;  // 0: as it is
+};
 constexpr std::size_t mostInstructions = 1 << 16;  // of a loop written out
 
 std::uint32_t resultOf(const Instruction& in) {
@@ -87,10 +103,6 @@ void eachOperand(Instruction& in, F f) {
   const auto operands = operandsOf(in);
   for (std::size_t k = operands->from; k < operands->to; ++k) f(in.words[k]);
   for (std::size_t k = operands->more; k < in.words.size(); ++k) f(in.words[k]);
-}
-
-void rename(std::uint32_t& id, const Ids& ids) {
-  if (const auto it = ids.find(id); it != ids.end()) id = it->second;
 }
 
 class Unroller {
@@ -223,51 +235,48 @@ class Unroller {
       (loop.labels.contains(block.label) ? body : i < index ? before : after).push_back(std::move(block));
     }
     const Block& header = body.front();
-    Ids ids;
+    Names &now = names_[0], &previous = names_[1];
+    previous.clear();
     std::uint32_t label = header.label;  // of this round's header: the first keeps its name
-    for (std::uint32_t round = 0; round <= loop.rounds; ++round) {
+    for (std::uint32_t round = 0;; ++round) {
       const bool first = round == 0, last = round == loop.rounds;
       const std::uint32_t nextLabel = last ? 0 : fresh();
-      Ids now;
+      now.clear();
       for (const Instruction& in : header.code)
         if (in.op == spv::OpPhi) {
           const auto [comes, goes] = comesAndGoes(in, loop);
-          now[in.at(2)] = first ? comes : goes;
-          if (!first) rename(now[in.at(2)], ids);
+          now.set(in.at(2), first ? comes : previous(goes));
         }
       for (std::size_t b = 0; b < (last ? 1 : body.size()); ++b) {
-        now[body[b].label] = b == 0 ? label : first ? body[b].label : fresh();
+        now.set(body[b].label, b == 0 ? label : first ? body[b].label : fresh());
         for (const Instruction& in : body[b].code)
           if (const std::uint32_t id = resultOf(in); id != 0 && !(b == 0 && in.op == spv::OpPhi))
-            now[id] = first ? id : another(id);
+            now.set(id, first ? id : another(id));
       }
       for (std::size_t b = 0; b < (last ? 1 : body.size()); ++b) {
-        Block& copy = before.emplace_back(Block{now[body[b].label], {}});
+        Block& copy = before.emplace_back(Block{now(body[b].label), {}});
         for (const Instruction& in : body[b].code) {
           const bool ends = in.op == spv::OpBranch || in.op == spv::OpBranchConditional;
           if (b == 0 && (in.op == spv::OpPhi || in.op == spv::OpLoopMerge)) continue;
           if (b == 0 && ends) {
-            copy.code.push_back(make(spv::OpBranch, {last ? loop.exit : now[loop.inside]}));
+            copy.code.push_back(make(spv::OpBranch, {last ? loop.exit : now(loop.inside)}));
             continue;
           }
           Instruction& out = copy.code.emplace_back(in);
-          eachOperand(out, [&](std::uint32_t& id) {
-            if (ends && id == header.label) id = nextLabel;
-            else rename(id, now);
-          });
-          if (const std::uint32_t id = resultOf(in)) rename(out.words[out.words[1] == id ? 1 : 2], now);
+          eachOperand(out, [&](std::uint32_t& id) { id = ends && id == header.label ? nextLabel : now(id); });
+          if (const std::uint32_t id = resultOf(in)) out.words[out.words[1] == id ? 1 : 2] = now(id);
         }
       }
-      ids = std::move(now);
-      if (!last) label = nextLabel;
+      if (last) break;
+      std::swap(now, previous);
+      label = nextLabel;
     }
     // Elsewhere the loop's names mean the last round's; the header's label does only where a phi says where it came from.
-    ids.erase(header.label);
     const auto adapt = [&](Block& block) {
       for (Instruction& in : block.code)
         eachOperand(in, [&](std::uint32_t& id) {
-          if (in.op == spv::OpPhi && id == header.label) id = label;
-          else rename(id, ids);
+          if (id != header.label) id = now(id);
+          else if (in.op == spv::OpPhi) id = label;
         });
     };
     std::for_each(before.begin(), before.begin() + static_cast<std::ptrdiff_t>(index), adapt);
@@ -289,29 +298,31 @@ class Unroller {
 
   /// Phis that one way leads to, and integers that are known: gone, and their names with them.
   void fold(Function& function) {
-    Ids same;
+    Names& same = names_[0];
+    same.clear();
     for (Block& block : function.blocks)
       std::erase_if(block.code, [&](Instruction& in) {
-        eachOperand(in, [&](std::uint32_t& id) { rename(id, same); });
+        eachOperand(in, [&](std::uint32_t& id) { id = same(id); });
         if (in.op == spv::OpPhi && in.words.size() == 5) {
-          same[in.at(2)] = in.at(3);
+          same.set(in.at(2), in.at(3));
           return true;
         }
         if (in.op != spv::OpIAdd && in.op != spv::OpIMul) return false;
         const auto a = value(in.at(3)), b = value(in.at(4));
         if (!a || !b) return false;
-        same[in.at(2)] = constant(in.at(1), in.op == spv::OpIAdd ? *a + *b : *a * *b);
+        same.set(in.at(2), constant(in.at(1), in.op == spv::OpIAdd ? *a + *b : *a * *b));
         return true;
       });
     for (Block& block : function.blocks)  // what comes round a loop that stayed
       for (Instruction& in : block.code)
-        if (in.op == spv::OpPhi) eachOperand(in, [&](std::uint32_t& id) { rename(id, same); });
+        if (in.op == spv::OpPhi) eachOperand(in, [&](std::uint32_t& id) { id = same(id); });
   }
 
   ParsedModule& module_;
   Known& known_;
   std::uint32_t mostRounds_;
   std::unordered_map<std::uint32_t, std::vector<Instruction>> decorations_;
+  Names names_[2];
   std::size_t lastDecoration_ = 0;
   std::vector<Instruction> added_;                                              // decorations of copies
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> constants_;  // by type and value
