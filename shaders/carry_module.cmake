@@ -5,8 +5,13 @@ foreach(define IN LISTS DEFINES)
   list(APPEND macros "-D${define}")
 endforeach()
 
+# Buffers' addresses are a part of SPIR-V from Vulkan 1.2 on; spirv-opt does next to nothing to modules with the extension.
+set(environment vulkan1.1)
+if(DEFINES MATCHES "ADDRESS=1")
+  set(environment vulkan1.2)
+endif()
 execute_process(
-  COMMAND ${GLSLANG} -V --quiet --target-env vulkan1.1 ${macros} "-I${FOLDER}" --depfile ${SPIRV}.d -o ${SPIRV} ${GLSL}
+  COMMAND ${GLSLANG} -V --quiet --target-env ${environment} ${macros} "-I${FOLDER}" --depfile ${SPIRV}.d -o ${SPIRV} ${GLSL}
   RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(result)
   # glslang: "ERROR: path:line: 'token' : message"; compilers and editors want "path:line: error: message".
@@ -25,7 +30,7 @@ if(DEFINES MATCHES "TURN=")
   set(passes --ssa-rewrite --loop-unroll --ccp --scalar-replacement=0 --ssa-rewrite --merge-blocks --redundancy-elimination
              --vector-dce --eliminate-dead-code-aggressive)
 endif()
-execute_process(COMMAND ${SPIRV_OPT} --target-env=vulkan1.1 --merge-return --inline-entry-points-exhaustive
+execute_process(COMMAND ${SPIRV_OPT} --target-env=${environment} --merge-return --inline-entry-points-exhaustive
                         --eliminate-dead-functions --private-to-local --convert-local-access-chains
                         --eliminate-local-single-block --eliminate-local-single-store --eliminate-dead-code-aggressive
                         ${passes} ${SPIRV} -o ${SPIRV}
@@ -34,7 +39,7 @@ if(result)
   message(FATAL_ERROR "${GLSL}: error: module ${NAME} cannot be optimised: ${output}")
 endif()
 
-execute_process(COMMAND ${SPIRV_VAL} --target-env vulkan1.1 ${SPIRV}
+execute_process(COMMAND ${SPIRV_VAL} --target-env ${environment} ${SPIRV}
                 RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(result)
   message(FATAL_ERROR "${GLSL}: error: module ${NAME} is not valid SPIR-V: ${output}")

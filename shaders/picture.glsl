@@ -34,9 +34,7 @@ layout(constant_id = 36) const bool GREY = false;  // rgb8: a byte a pixel, in t
 
 #if !ADDRESS
 layout(set = 0, binding = 2, std140) uniform View { RAW view[VIEW_RAWS]; };
-#if !TURN
 real4 viewRow(uint row) { return ROW(view, row); }
-#endif
 #endif
 
 layout(set = 0, binding = 3, std430) buffer Image { uvec4 image[]; };

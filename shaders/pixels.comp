@@ -50,16 +50,10 @@ layout(push_constant) uniform Portion {
 
 #if TURN
 // Under the loop llvmpipe would load lane by lane, so that all rows are loaded before it.
-#if FREE
-real4 keptRecords[WORLD_RAWS], keptView[VIEW_RAWS];
-real4 worldRecord(uint row) { return keptRecords[row]; }
-#define KEEP_RECORDS for (uint i = 0u; i < WORLD_RAWS; ++i) keptRecords[i] = ROW(worldRecords, i)
-#else
-real4 keptRecords[RECORD_RAWS], keptView[VIEW_RAWS];
-real4 record(uint row) { return keptRecords[row]; }
-#define KEEP_RECORDS for (uint i = 0u; i < RECORD_RAWS; ++i) keptRecords[i] = ROW(records, i)
-#endif
+real4 keptRecords[FREE ? WORLD_RAWS : RECORD_RAWS], keptView[VIEW_RAWS];
 real4 viewRow(uint row) { return keptView[row]; }
+real4 record(uint row) { return keptRecords[row]; }
+real4 worldRecord(uint row) { return keptRecords[row]; }
 #elif ADDRESS
 real4 viewRow(uint row) { return ROW(portion.view.rows, row); }
 real4 record(uint row) { return ROW(portion.records.rows, row); }
@@ -232,8 +226,8 @@ void main() {
   uint pixel = y * portion.stride + x;
   uint column = (portion.firstX + x) * SAMPLES + portion.sampleX, row = (portion.firstY + y) * SAMPLES + portion.sampleY;
 #if TURN
-  KEEP_RECORDS;
-  for (uint i = 0u; i < VIEW_RAWS; ++i) keptView[i] = ROW(view, i);
+  for (uint i = 0u; i < (FREE ? WORLD_RAWS : RECORD_RAWS); ++i) keptRecords[i] = ROW(portion.records.rows, i);
+  for (uint i = 0u; i < VIEW_RAWS; ++i) keptView[i] = ROW(portion.view.rows, i);
   [[dont_unroll]] for (uint q = 0u; q < RAYS / 4u; ++q) {
     Result result[4];
 #if TURN == 1

@@ -5,7 +5,6 @@
 // ADDRESS 1, with STORAGE 0: by the buffers' addresses. llvmpipe compares every number of a uniform buffer with the
 // buffer's size and branches around the load, and keeps little in registers across branches; from an address it loads
 // the number, once for all lanes.
-// TURN, with STORAGE 0: pixels.comp defines record() and worldRecord(), from copies.
 #ifndef SOLIDCAST_RECORDS
 #define SOLIDCAST_RECORDS
 #include "numeric.glsl"
@@ -68,15 +67,11 @@ real4 worldRecord(uint row) { return record(row); }  // the lists of free rays h
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Rows { RAW rows[]; };
 #elif EYE
 RECORDS(0, Records, records, RECORD_RAWS);
-#if !TURN
 real4 record(uint row) { return ROW(records, row); }
-#endif
 #endif
 #if WORLD && !ADDRESS
 RECORDS(1, WorldRecords, worldRecords, WORLD_RAWS);
-#if !TURN
 real4 worldRecord(uint row) { return ROW(worldRecords, row); }
-#endif
 #endif
 
 #endif

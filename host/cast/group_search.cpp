@@ -35,6 +35,7 @@ GroupSearch::GroupSearch(const PassJob& job, const Scene& scene, const PlanChoic
       asked_(choice.plan),
       bakeAtOnce_(choice.plan == Plan::baked),
       wide_(choice.wide),
+      address_(choice.address),
       turn_(choice.turn),
       buffers_(8) {
   if (choice.plan == Plan::baked || choice.bakeLater) bakingCosts_ = choice.bakingMs;
@@ -114,16 +115,16 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   constants[doubt] = bits(doubtOf(program_));
   constants[hitsInDoubt] = program_.method == Method::exact && program_.real == RealType::f32;
   solids_ = search.solids();
-  const bool unrolled = !bakeAtOnce_ && !program_.storage && solids_ <= mostWide;
-  program_.address = wide_ && unrolled;
-  program_.turn = unrolled ? turn_ : 0;
+  program_.address = address_ && !bakeAtOnce_ && !program_.storage && solids_ <= mostWide;
+  program_.turn = program_.address ? turn_ : 0;
   constants[rays] = program_.turn > 0 ? 16 : raysOf(program_, solids_, wide_);
   const bool same = pipeline_ && constants == constants_ && !bakeAtOnce_;
   if (same) return;
   constants_ = std::move(constants);
   if (bakeAtOnce_) return bake();
   loadModule();
-  usePipeline(program_.address ? gpu::baked(spirv_, {}) : spirv_);  // baked: with its loops unrolled
+  usePipeline(program_.address && program_.turn == 0 ? gpu::baked(spirv_, {})
+                                                     : spirv_);  // baked: with its loops unrolled
 }
 
 void GroupSearch::loadModule() {

@@ -36,9 +36,9 @@ class GroupSearch : public PixelSearch {
   Plan asked_;
   std::optional<double> bakingCosts_;  // ms; none: not possible, not wanted, or done
   bool bakeAtOnce_;
-  bool wide_;         // PlanChoice
-  int turn_;          // the same
-  double spent_ = 0;  // ms of dispatches so far, without the first
+  bool wide_, address_;  // PlanChoice
+  int turn_;             // the same
+  double spent_ = 0;     // ms of dispatches so far, without the first
   bool warm_ = false;
   std::vector<SearchPortion> portions_;
   std::optional<Records> tiledSearch_;  // what tiles are made from

@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include "host/cast/plan.h"
 
 #include <algorithm>
@@ -25,14 +24,10 @@ double solidNs(const Program& p) {
   if (p.method == Method::fast) return 0.30;
   return p.real == RealType::f64 ? 0.53 : p.real == RealType::df32 ? 10 : 0.5;
 }
-constexpr double freeRays = 2.5;                    // orthographic cameras: times the above
-constexpr double bakedPart = 0.45;                  // of a ray from a uniform buffer
-constexpr double wideFast = 0.55, wideExact = 0.8;  // the same with more rays an invocation, by addresses
-// Wall ns a ray (fast) and ms of compilation: 2.95 and 4 with one ray at a time, 1.66 and 8.5 with four, 1.2 and 36 by addresses.
-constexpr double fewestFours = 3e6, fewestWide = 4e7;
+constexpr double freeRays = 2.5;        // orthographic cameras: times the above
+constexpr double bakedPart = 0.45;      // of a ray from a uniform buffer
 constexpr double storageTimes = 1.5;    // the same
 constexpr double pipelineMs = 15;       // from the driver's cache, as most are
-constexpr double turnPipelineMs = 5;    // the same for one ray at a time
 constexpr double listsPipelineMs = 30;  // the same for sixteen rays an invocation
 constexpr double flattenUs = 4;         // a solid, in binary128
 constexpr double indexUs = 0.5;         // a solid, on two threads
@@ -49,20 +44,23 @@ std::uint32_t total(const PlanFacts& f) {
   return n;
 }
 
-/// Whether there are modules with loops unrolled (shaders/CMakeLists.txt), for llvmpipe and so few solids.
-bool hasUnrolled(const PlanFacts& f) {
+/// Records by addresses, with loops unrolled: how many of an invocation's rays at a time (Program::turn; 0: all sixteen of fast,
+/// all eight of exact), from how many rays on that pays, what a pipeline takes, and a ray as a part of solidNs(). Seen with the
+/// course's scene: 2.0 ns a ray, 1.45 and 1.2 (fast), 3.4, 2.5 and 2.0 (exact); 4 ms, 8 and 28.
+struct AtATime {
+  int turn;
+  double from, pipeline_ms, part;
+};
+constexpr AtATime atATime[] = {{0, 4e7, 30, 0.62}, {4, 5e6, 9, 0.75}, {1, 0, 5, 1}};
+
+/// What serves, where there are such modules (shaders/CMakeLists.txt).
+const AtATime* byAddress(const PlanFacts& f) {
   const Program& p = f.program;
-  return f.llvmpipe && p.job == Job::pixels && p.method != Method::naive && !p.hits &&
-         (p.method == Method::fast || p.real == RealType::f64) && total(f) <= mostWide;
-}
-/// Many rays an invocation, records by addresses.
-bool readsByAddress(const PlanFacts& f) {
-  return hasUnrolled(f) && f.addresses && f.pixels * f.pictures >= (getenv("FW") ? atof(getenv("FW")) : fewestWide);
-}
-/// Program::turn.
-int turnOf(const PlanFacts& f) {
-  if (!hasUnrolled(f) || readsByAddress(f)) return 0;
-  return f.pixels * f.pictures < (getenv("FF") ? atof(getenv("FF")) : fewestFours) ? 1 : 4;
+  if (!f.addresses || p.job != Job::pixels || p.method == Method::naive || p.hits || total(f) > mostWide)
+    return nullptr;
+  if (p.method == Method::exact && p.real != RealType::f64) return nullptr;
+  return std::find_if(std::begin(atATime), std::end(atATime),
+                      [&](const AtATime& a) { return f.pixels * f.pictures >= a.from; });
 }
 
 /// One free ray through an index, wall ns on two threads: steps grow with the logarithm of the number of solids, and what
@@ -111,11 +109,8 @@ PlanCost costOf(Plan plan, const PlanFacts& f) {
       break;
     }
     case Plan::uniform:
-      cost.prepare_ms = flatten + (turnOf(f) == 1 ? turnPipelineMs : pipelineMs);
-      cost.rays_ms = rays * perSolid * each *
-                     (!readsByAddress(f)                 ? 1
-                      : f.program.method == Method::fast ? wideFast
-                                                         : wideExact);
+      cost.prepare_ms = flatten + (byAddress(f) ? byAddress(f)->pipeline_ms : pipelineMs);
+      cost.rays_ms = rays * perSolid * each * (byAddress(f) ? byAddress(f)->part : 1);
       if (bytes > f.uniformRange)
         cost.impossible =
             std::to_string(bytes) + " bytes of records, at most " + std::to_string(f.uniformRange) + " fit";
@@ -196,8 +191,10 @@ PlanChoice choosePlan(const PlanFacts& facts, Plan asked) {
     throw Error(Exit::usage, std::string("--plan ") + planName(best.plan) + ": not possible here: " + best.impossible);
   PlanChoice choice;
   choice.plan = best.plan;
-  choice.wide = best.plan == Plan::baked || (best.plan == Plan::uniform && readsByAddress(facts));
-  choice.turn = best.plan == Plan::uniform ? turnOf(facts) : 0;
+  const AtATime* addressed = best.plan == Plan::uniform ? byAddress(facts) : nullptr;
+  choice.address = addressed;
+  choice.turn = addressed ? addressed->turn : 0;
+  choice.wide = best.plan == Plan::baked || (addressed && addressed->turn == 0);
   choice.bakingMs = bakingMs(facts.program.real, total(facts));
   choice.bakeLater = asked == Plan::automatic && best.plan == Plan::uniform && !facts.moving &&
                      costOf(Plan::baked, facts).impossible.empty();
@@ -218,8 +215,8 @@ std::vector<std::string> planLines(const PlanFacts& facts, const PlanChoice& cho
     lines.push_back(line);
   }
   if (choice.wide) lines.push_back("many rays an invocation: so many rays repay the longer compilation");
-  if (choice.turn == 1) lines.push_back("an invocation's rays one at a time: so few do not repay more to compile");
-  if (choice.turn == 4) lines.push_back("an invocation's rays four at a time");
+  if (choice.turn == 1) lines.push_back("one ray at a time: so few do not repay more code");
+  if (choice.turn == 4) lines.push_back("four rays at a time: so many repay more code than for one");
   if (choice.bakeLater)
     lines.push_back("baked once dispatches have taken " + number(choice.bakingMs) + " ms, should it come to that");
   return lines;

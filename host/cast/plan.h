@@ -31,9 +31,9 @@ struct PlanCost {
 
 struct PlanChoice {
   Plan plan;
-  // So many rays that more of them in one invocation, slower to compile, pay: with `baked`, and with `uniform` by addresses.
-  bool wide = false;
-  int turn = 0;  // `uniform`: Program::turn
+  bool wide = false;       // so many rays that more of them in one invocation, slower to compile, pay (baked, uniform)
+  bool address = false;    // `uniform`: records by their addresses
+  int turn = 0;            // the same: Program::turn
   bool bakeLater = false;  // change over to `baked` once dispatches have taken bakingMs
   double bakingMs = 0;
   std::vector<PlanCost> costs;  // of all plans, the chosen one first

@@ -24,8 +24,8 @@ std::string Program::moduleName() const {
   name += methodLabel(*this);
   if (job != Job::rays) name += std::string("_") + cameras[camera];
   if (storage) name += index ? "_index" : "_storage";
-  if (address) name += "_address";
   if (turn > 0) name += "_turn" + std::to_string(turn);
+  else if (address) name += "_address";
   if (job == Job::pixels && hits) name += "_hits";
   return name;
 }

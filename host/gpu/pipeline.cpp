@@ -1,5 +1,3 @@
-#include <chrono>
-#include <cstdio>
 #include <algorithm>
 #include <glslang/SPIRV/spirv.hpp>
 
@@ -85,17 +83,11 @@ Pipeline::~Pipeline() = default;
 Pipeline Device::makePipeline(std::span<const std::uint32_t> whole, const Specialisation& specialisation,
                               const std::string& name) {
   const Core& core = *impl_->core;
-  std::vector<std::uint32_t> given;
-  if (const char* f = getenv("LOAD_MODULE")) { FILE* o = fopen(f, "r"); given.resize(4000000); given.resize(fread(given.data(), 4, given.size(), o)); fclose(o); whole = given; }
   auto impl = std::make_unique<Pipeline::Impl>();
   impl->core = impl_->core;
   readInterface(whole, specialisation);  // refuses what is no module of ours, before it is cut
-  const auto ts0 = std::chrono::steady_clock::now();
-  std::vector<std::uint32_t> spirv = specialised(whole, {specialisation.begin(), specialisation.end()});
-  if (const char* f = getenv("DUMP_SPV")) { FILE* o = fopen(f, "w"); fwrite(spirv.data(), 4, spirv.size(), o); fclose(o); }
-  if (const char* f = getenv("LOAD_SPV")) { FILE* o = fopen(f, "r"); spirv.resize(4000000); spirv.resize(fread(spirv.data(), 4, spirv.size(), o)); fclose(o); }
+  const std::vector<std::uint32_t> spirv = specialised(whole, {specialisation.begin(), specialisation.end()});
   impl->interface = readInterface(spirv, {});
-  if (getenv("TIME_SPV")) fprintf(stderr, "SPEC %.3f\n", std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - ts0).count());
   impl->spirvBytes = spirv.size() * sizeof spirv[0];
   const ShaderInterface& shader = impl->interface;
   requireDeviceCan(core, shader);
@@ -142,9 +134,7 @@ Pipeline Device::makePipeline(std::span<const std::uint32_t> whole, const Specia
                                                            .pSpecializationInfo = nullptr},
                                                  .layout = layout};
   VkPipeline pipeline{};
-  const auto t0 = std::chrono::steady_clock::now();
   const VkResult result = core.vkCreateComputePipelines(core.device, {}, 1, &pipelineInfo, nullptr, &pipeline);
-  if (getenv("TIME_SPV")) fprintf(stderr, "PIPE %.3f\n", std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - t0).count());
   if (result != VK_SUCCESS) {
     throw Error(Exit::shader,
                 core.info.name + " does not take the shader module (Vulkan result " + std::to_string(result) + ")");

@@ -265,6 +265,14 @@ class Specialiser {
     }
     std::erase_if(module_.globals,
                   [&](const Instruction& in) { return isAnnotation(in) && !defined.contains(in.at(1)); });
+    for (Instruction& in : module_.globals) {  // from SPIR-V 1.4 on, an entry point names all buffers
+      if (in.op != spv::OpEntryPoint) continue;
+      std::size_t end = 3;  // of its own name
+      while (in.at(end++) >> 24 != 0) continue;
+      std::erase_if(in.words,
+                    [&, i = std::size_t{0}](std::uint32_t id) mutable { return i++ >= end && !defined.contains(id); });
+      in.words[0] = static_cast<std::uint32_t>(in.words.size()) << 16 | in.op;
+    }
   }
   static bool isAnnotation(const Instruction& in) {
     return in.op == spv::OpName || in.op == spv::OpMemberName || in.op == spv::OpDecorate ||
