@@ -7,7 +7,10 @@
 namespace solidcast::gpu {
 namespace {
 
-constexpr spv_target_env environment = SPV_ENV_VULKAN_1_1;
+/// The first Vulkan that takes the module's version of SPIR-V.
+spv_target_env environmentOf(std::span<const std::uint32_t> spirv) {
+  return spirv.size() > 1 && spirv[1] > 0x10300 ? SPV_ENV_VULKAN_1_2 : SPV_ENV_VULKAN_1_1;
+}
 
 /// Collects errors as "word 12: message; ...".
 spvtools::MessageConsumer collectErrors(std::string& out) {
@@ -21,7 +24,7 @@ spvtools::MessageConsumer collectErrors(std::string& out) {
 }  // namespace
 
 std::string validationError(std::span<const std::uint32_t> spirv) {
-  spvtools::SpirvTools tools(environment);
+  spvtools::SpirvTools tools(environmentOf(spirv));
   std::string errors;
   tools.SetMessageConsumer(collectErrors(errors));
   if (tools.Validate(spirv.data(), spirv.size())) return {};
@@ -29,7 +32,7 @@ std::string validationError(std::span<const std::uint32_t> spirv) {
 }
 
 std::string disassemble(std::span<const std::uint32_t> spirv) {
-  spvtools::SpirvTools tools(environment);
+  spvtools::SpirvTools tools(environmentOf(spirv));
   std::string errors, text;
   tools.SetMessageConsumer(collectErrors(errors));
   constexpr std::uint32_t style = SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES | SPV_BINARY_TO_TEXT_OPTION_INDENT;

@@ -1,5 +1,5 @@
-// Uniform plan for so many rays that records are read by their addresses, many rays an invocation: no bit of any channel may
-// show it.
+// Uniform plan with records read by their addresses, one ray, four or all of an invocation's at a time: no bit of any channel
+// may show it.
 #include "host/cast/plan.h"
 #include "host/scene/camera_path.h"
 #include "host/scene/random.h"
@@ -9,18 +9,23 @@ namespace solidcast {
 namespace {
 
 constexpr int kManyPictures = 1'000'000;  // of even the smallest size
+constexpr std::pair<int, const char*> kWays[] = {
+    {1, "_turn1"}, {1000, "_turn4"}, {kManyPictures, "_address"}};  // pictures, module
 
 class AddressTest : public OnDevice, public testing::WithParamInterface<Method> {
  protected:
-  CastOptions options(int pictures) const {
-    return {.method = GetParam(), .plan = Plan::uniform, .pictures = pictures, .moving = true};
+  CastOptions options(int pictures, Plan plan = Plan::uniform) const {
+    return {.method = GetParam(), .plan = plan, .pictures = pictures, .moving = true};
   }
   static Band whole(ImageCaster& caster) {
     Band all;
     caster.render([&](Band& band) { all = std::move(band); });
     return all;
   }
-  static bool readsByAddress(const ImageCaster& caster) { return caster.stats().module.ends_with("_address"); }
+  static bool uses(const ImageCaster& caster, const char* module) { return caster.stats().module.ends_with(module); }
+  static bool readsByAddress(const ImageCaster& caster) {
+    return std::any_of(std::begin(kWays), std::end(kWays), [&](const auto& way) { return uses(caster, way.second); });
+  }
   static RenderJob job() {
     RenderJob job;
     job.width = 101, job.height = 75;
@@ -29,10 +34,13 @@ class AddressTest : public OnDevice, public testing::WithParamInterface<Method> 
     return job;
   }
   void expectSamePicture(const Scene& scene, const RenderJob& job, const std::string& what) {
-    ImageCaster plain(device(), scene, job, options(1)), addressed(device(), scene, job, options(kManyPictures));
-    EXPECT_FALSE(readsByAddress(plain)) << what;
-    EXPECT_TRUE(readsByAddress(addressed)) << what;
-    expectSame(whole(addressed), whole(plain), what);
+    ImageCaster plain(device(), scene, job, options(1, Plan::storage));
+    const Band expected = whole(plain);
+    for (const auto& [pictures, module] : kWays) {
+      ImageCaster addressed(device(), scene, job, options(pictures));
+      EXPECT_TRUE(uses(addressed, module)) << what << " " << addressed.stats().module;
+      expectSame(whole(addressed), expected, what + module);
+    }
   }
 };
 INSTANTIATE_TEST_SUITE_P(, AddressTest, testing::Values(Method::fast, Method::exact),
@@ -75,14 +83,16 @@ TEST_P(AddressTest, NorWithSamplesPartsAndTies) {
 TEST_P(AddressTest, WhileTheCameraMovesAndSolidsComeAndGo) {
   const Scene few = randomScene("mixed", mostWide, 1), many = randomScene("mixed", mostWide + 1, 1);
   const RenderJob small = job();
-  ImageCaster caster(device(), few, small, options(kManyPictures));
-  EXPECT_TRUE(readsByAddress(caster));
-  Scene turned = few;
-  for (const Scene* next : std::initializer_list<const Scene*>{&few, &turned, &many, &turned}) {
-    turned.camera = orbited(turned.camera, pointLookedAt(few), 20);
-    caster.setScene(*next);
-    ImageCaster plain(device(), *next, small, options(1));
-    expectSame(whole(caster), whole(plain));
+  for (const auto& [pictures, module] : kWays) {
+    ImageCaster caster(device(), few, small, options(pictures));
+    EXPECT_TRUE(uses(caster, module));
+    Scene turned = few;
+    for (const Scene* next : std::initializer_list<const Scene*>{&few, &turned, &many, &turned}) {
+      turned.camera = orbited(turned.camera, pointLookedAt(few), 20);
+      caster.setScene(*next);
+      ImageCaster plain(device(), *next, small, options(1, Plan::storage));
+      expectSame(whole(caster), whole(plain), module);
+    }
   }
 }
 
@@ -90,14 +100,16 @@ TEST_P(AddressTest, OnlyWhereThereIsAModuleForIt) {
   const Scene few = loaded("a_solids.json"), many = randomScene("sphere", mostWide + 1, 1);
   RenderJob normals = job();
   normals.channels.normal = true;  // exact's come from the second pass
-  EXPECT_EQ(readsByAddress(ImageCaster(device(), few, normals, options(kManyPictures))), GetParam() == Method::exact);
-  EXPECT_FALSE(readsByAddress(ImageCaster(device(), many, job(), options(kManyPictures))));
-  CastOptions pairs = options(kManyPictures);
-  pairs.arithmetic = Arithmetic::df32;
-  if (GetParam() == Method::exact) EXPECT_FALSE(readsByAddress(ImageCaster(device(), few, job(), pairs)));
-  CastOptions naive = options(kManyPictures);
-  naive.method = Method::naive;
-  EXPECT_FALSE(readsByAddress(ImageCaster(device(), few, job(), naive)));
+  for (const auto& [pictures, module] : kWays) {
+    EXPECT_EQ(readsByAddress(ImageCaster(device(), few, normals, options(pictures))), GetParam() == Method::exact);
+    EXPECT_FALSE(readsByAddress(ImageCaster(device(), many, job(), options(pictures))));
+    CastOptions pairs = options(pictures);
+    pairs.arithmetic = Arithmetic::df32;
+    if (GetParam() == Method::exact) { EXPECT_FALSE(readsByAddress(ImageCaster(device(), few, job(), pairs))); }
+    CastOptions naive = options(pictures);
+    naive.method = Method::naive;
+    EXPECT_FALSE(readsByAddress(ImageCaster(device(), few, job(), naive)));
+  }
 }
 
 }  // namespace
