@@ -1,7 +1,7 @@
 // Loops of known length written out before the driver sees them. lavapipe does it too, but one loop after the other, and
 // goes over the whole shader with all of its passes after each: most of what a pipeline took.
 //
-// A loop here is what glslang and spirv-opt make of `for (i = a; i < b; i += c)` without break or return:
+// A loop here is what glslang and spirv-opt make of `for (i = a; i < b; i += c)` without break, continue or return:
 //     header:  phis; more code; i < b; OpLoopMerge exit continue; branch to the body or to exit
 //     body and continue, which branches back to the header, and is the only one that does
 // Each round is a copy with names of its own. The phis are gone: in the first round they are what they came in with, then
@@ -112,6 +112,7 @@ class Unroller {
     for (std::size_t i = 0; i < module.globals.size(); ++i) {
       const Instruction& in = module.globals[i];
       if (in.op == spv::OpDecorate) decorations_[in.at(1)].push_back(in), lastDecoration_ = i;
+      if (in.op == spv::OpTypeInt && in.at(2) == 32) integers_.insert(in.at(1));
       if (in.op == spv::OpConstant && in.words.size() == 4) constants_[{in.at(1), in.at(3)}] = in.at(2);
     }
   }
@@ -158,6 +159,8 @@ class Unroller {
     for (const Block& block : function.blocks) byLabel[block.label] = &block;
     std::size_t instructions = n;
     std::uint32_t back = 0;  // the block that goes back to the header
+    std::size_t continuing =
+        0;  // ways to the continue block: out of a selection it would be none once the loop is gone
     for (std::vector<std::uint32_t> open = {loop.inside}; !open.empty();) {
       const std::uint32_t label = open.back();
       open.pop_back();
@@ -167,13 +170,14 @@ class Unroller {
       const std::vector<std::uint32_t> next = successors(block);
       if (next.empty()) return {};
       for (std::uint32_t to : next) {
+        continuing += to == merge.at(2);
         if (to != header.label) open.push_back(to);
         else if (std::exchange(back, label) != 0) return {};
       }
       instructions += block.code.size();
     }
     const auto rounds = roundsOf(function, header, loop);
-    if (back == 0 || !rounds || instructions * (*rounds + 1) > mostInstructions) return {};
+    if (back == 0 || continuing > 1 || !rounds || instructions * (*rounds + 1) > mostInstructions) return {};
     loop.rounds = *rounds;
     return loop;
   }
@@ -207,7 +211,7 @@ class Unroller {
     const auto from = value(comes), by = value(step->at(4));
     if (!from || !by || *by == 0) return {};
     std::uint32_t rounds = 0;
-    for (std::uint64_t i = *from; i < *end; i += *by)
+    for (std::uint32_t i = *from; i < *end; i += *by)
       if (++rounds > mostRounds_) return {};
     return rounds;
   }
@@ -307,7 +311,7 @@ class Unroller {
           same.set(in.at(2), in.at(3));
           return true;
         }
-        if (in.op != spv::OpIAdd && in.op != spv::OpIMul) return false;
+        if ((in.op != spv::OpIAdd && in.op != spv::OpIMul) || !integers_.contains(in.at(1))) return false;
         const auto a = value(in.at(3)), b = value(in.at(4));
         if (!a || !b) return false;
         same.set(in.at(2), constant(in.at(1), in.op == spv::OpIAdd ? *a + *b : *a * *b));
@@ -323,6 +327,7 @@ class Unroller {
   std::uint32_t mostRounds_;
   std::unordered_map<std::uint32_t, std::vector<Instruction>> decorations_;
   Names names_[2];
+  std::unordered_set<std::uint32_t> integers_;  // types, of 32 bits
   std::size_t lastDecoration_ = 0;
   std::vector<Instruction> added_;                                              // decorations of copies
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> constants_;  // by type and value

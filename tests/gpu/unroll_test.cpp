@@ -42,6 +42,8 @@ const Case cases[] = {
     {"Precise",
      "for (uint i = 0u; i < COUNT; ++i) { precise float f = 0.1 * float(x) + float(sum); sum = uint(f * 3.0); }", 0},
     {"ThatBreaks", "for (uint i = 0u; i < COUNT; ++i) { sum += i; if (sum > x) break; }", 1},
+    {"ThatContinues",
+     "for (uint i = 0u; i < COUNT; ++i) { if ((x & 1u) == 1u) { last += i; continue; } sum = sum * 3u + i; }", 1},
     {"OfUnknownLength", "for (uint i = 0u; i < x; ++i) sum = sum * 3u + i;", 1},
     {"MarkedSo", "[[dont_unroll]] for (uint i = 0u; i < COUNT; ++i) sum = sum * 3u + i;", 1},
     {"Signed", "for (int i = 0; i < int(COUNT); ++i) sum = sum * 3u + uint(i);", 1},  // the shaders have none
