@@ -50,7 +50,12 @@ layout(push_constant) uniform Portion {
 
 #if TURN
 // Under the loop llvmpipe would load lane by lane, so that all rows are loaded before it.
-real4 keptRecords[FREE ? WORLD_RAWS : RECORD_RAWS], keptView[VIEW_RAWS];
+#if FREE
+#define RAWS WORLD_RAWS
+#else
+#define RAWS RECORD_RAWS
+#endif
+real4 keptRecords[RAWS], keptView[VIEW_RAWS];
 real4 viewRow(uint row) { return keptView[row]; }
 real4 record(uint row) { return keptRecords[row]; }
 real4 worldRecord(uint row) { return keptRecords[row]; }
@@ -226,7 +231,7 @@ void main() {
   uint pixel = y * portion.stride + x;
   uint column = (portion.firstX + x) * SAMPLES + portion.sampleX, row = (portion.firstY + y) * SAMPLES + portion.sampleY;
 #if TURN
-  for (uint i = 0u; i < (FREE ? WORLD_RAWS : RECORD_RAWS); ++i) keptRecords[i] = ROW(portion.records.rows, i);
+  for (uint i = 0u; i < RAWS; ++i) keptRecords[i] = ROW(portion.records.rows, i);
   for (uint i = 0u; i < VIEW_RAWS; ++i) keptView[i] = ROW(portion.view.rows, i);
   [[dont_unroll]] for (uint q = 0u; q < RAYS / 4u; ++q) {
     Result result[4];

@@ -196,7 +196,7 @@ class Unroller {
 
   std::optional<std::uint32_t> roundsOf(const Function& function, const Block& header, const Loop& loop) const {
     const Instruction* condition = definition(header.code, header.code.back().at(1));
-    if (!condition || condition->op != spv::OpULessThan) return {};
+    if (!condition || (condition->op != spv::OpULessThan && condition->op != spv::OpSLessThan)) return {};
     const Instruction* phi = definition(header.code, condition->at(3));
     const auto end = value(condition->at(4));
     if (!phi || !end) return {};
@@ -211,7 +211,9 @@ class Unroller {
     const auto from = value(comes), by = value(step->at(4));
     if (!from || !by || *by == 0) return {};
     std::uint32_t rounds = 0;
-    for (std::uint32_t i = *from; i < *end; i += *by)
+    // The order of signed numbers is that of unsigned ones with the highest bit turned over.
+    const std::uint32_t sign = condition->op == spv::OpSLessThan ? 1u << 31 : 0;
+    for (std::uint32_t i = *from; (i ^ sign) < (*end ^ sign); i += *by)
       if (++rounds > mostRounds_) return {};
     return rounds;
   }

@@ -1,6 +1,7 @@
 // Loops written out before the driver sees them: the same results as by the driver's own loops, and nothing left of them.
 #include <spirv-tools/optimizer.hpp>
 
+#include "host/carried/carried.h"
 #include "tests/gpu/fixture.h"
 
 namespace solidcast::gpu {
@@ -46,8 +47,14 @@ const Case cases[] = {
      "for (uint i = 0u; i < COUNT; ++i) { if ((x & 1u) == 1u) { last += i; continue; } sum = sum * 3u + i; }", 1},
     {"OfUnknownLength", "for (uint i = 0u; i < x; ++i) sum = sum * 3u + i;", 1},
     {"MarkedSo", "[[dont_unroll]] for (uint i = 0u; i < COUNT; ++i) sum = sum * 3u + i;", 1},
-    {"Signed", "for (int i = 0; i < int(COUNT); ++i) sum = sum * 3u + uint(i);", 1},  // the shaders have none
+    {"Signed", "for (int i = -1; i < 2; ++i) sum = sum * 3u + uint(i) * COUNT;", 0},
 };
+
+int count(const std::string& text, const std::string& word) {
+  int n = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++n;
+  return n;
+}
 
 class UnrollTest : public OnLavapipe, public testing::WithParamInterface<Case> {
  protected:
@@ -66,11 +73,6 @@ class UnrollTest : public OnLavapipe, public testing::WithParamInterface<Case> {
                            "}\n",
                        "loop.comp", {})
         .spirv;
-  }
-  static int count(const std::string& text, const std::string& word) {
-    int n = 0;
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++n;
-    return n;
   }
   static std::vector<std::uint32_t> results(const std::vector<std::uint32_t>& module, std::uint32_t count) {
     const Pipeline pipeline = device().makePipeline(module, {{0, count}});
@@ -101,6 +103,23 @@ TEST_P(UnrollTest, ComputesTheSame) {
     }
     EXPECT_EQ(results(prepared, rounds), results(asWritten, rounds));
   }
+}
+
+// Else the driver has them, seven in a row, and nothing but its time tells.
+TEST(CarriedLoops, AreWrittenOutWhereRaysTakeTurns) {
+  for (const char* method : {"fast", "exact64"})
+    for (const char* camera : {"perspective", "environment", "orthographic"})
+      for (const std::string turn : {"1", "4"}) {
+        const auto whole = carriedModule(std::string("pixels_") + method + "_" + camera + "_turn" + turn);
+        for (std::uint32_t solids : {0u, 1u, 2u}) {
+          std::vector<std::pair<std::uint32_t, std::uint32_t>> constants = {{20, 60}, {21, 60}, {22, 6}};  // rows
+          for (std::uint32_t kind = 0; kind < 7; ++kind) constants.push_back({kind, solids});
+          const std::vector<std::uint32_t> module = specialised(whole, constants);
+          EXPECT_EQ(validationError(module), "");
+          const std::string text = disassemble(module);
+          EXPECT_EQ(count(text, "OpLoopMerge"), turn == "1" ? 2 : 1) << method << camera << turn << solids;
+        }
+      }
 }
 
 }  // namespace
