@@ -41,8 +41,8 @@ struct CastStats {
   std::uint64_t rays = 0, fallbackRays = 0;
   std::uint64_t dispatches = 0;  // of plan index: more than one a block where rays had to go on
   std::uint64_t deviceBytes = 0;
-  int pipelines = 0;  // made so far
-  std::string module;
+  int pipelines = 0;                                      // made so far
+  std::vector<std::string> modules;                       // of the search, one a pass
   std::vector<std::filesystem::path> files;               // that the shaders were compiled from; none: as carried
   std::size_t spirvBytes = 0, specialisedSpirvBytes = 0;  // as written, and as the driver got it
   std::uint64_t nanColours = 0;                           // of users' own GLSL, shown in magenta

@@ -40,9 +40,6 @@ GroupSearch::GroupSearch(const PassJob& job, const Scene& scene, const PlanChoic
       buffers_(8) {
   if (choice.plan == Plan::baked || choice.bakeLater) bakingCosts_ = choice.bakingMs;
   setScene(scene);
-  job_.stats.module += (job_.stats.module.empty() ? "" : ", ") + program_.moduleName();
-  job_.stats.spirvBytes += spirv_.size() * 4;
-  job_.stats.specialisedSpirvBytes += pipeline_->spirvBytes();
 }
 
 void GroupSearch::setScene(const Scene& scene) {
@@ -128,16 +125,22 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
 }
 
 void GroupSearch::loadModule() {
-  if (const std::string name = program_.moduleName(); name != compiled_) {
-    gpu::CompiledModule module = programModule(program_, job_.options);
-    job_.stats.files.insert(job_.stats.files.end(), module.files.begin(), module.files.end());
-    spirv_ = std::move(module.spirv);
-    compiled_ = name;
-  }
+  const std::string name = program_.moduleName();
+  if (name == compiled_) return;
+  gpu::CompiledModule module = programModule(program_, job_.options);
+  CastStats& stats = job_.stats;
+  stats.files.insert(stats.files.end(), module.files.begin(), module.files.end());
+  stats.spirvBytes += 4 * (module.spirv.size() - spirv_.size());
+  if (compiled_.empty()) stats.modules.push_back(name);
+  else *std::find(stats.modules.begin(), stats.modules.end(), compiled_) = name;
+  spirv_ = std::move(module.spirv);
+  compiled_ = name;
 }
 
 void GroupSearch::usePipeline(std::span<const std::uint32_t> spirv) {
+  job_.stats.specialisedSpirvBytes -= pipeline_ ? pipeline_->spirvBytes() : 0;
   pipeline_.emplace(job_.device.makePipeline(spirv, constants_));
+  job_.stats.specialisedSpirvBytes += pipeline_->spirvBytes();
   ++job_.stats.pipelines;
 }
 

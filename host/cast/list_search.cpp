@@ -40,8 +40,8 @@ void reserve(gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, gpu::B
 
 ListSearch::ListSearch(const PassJob& job, const Scene& scene) : job_(job), scene_(&scene), program_(job.program) {
   program_.job = Job::lists;
-  job_.stats.module += (job_.stats.module.empty() ? "" : ", ") + program_.moduleName();
   program_.storage = !job_.device.info().name.starts_with("llvmpipe");
+  job_.stats.modules.push_back(program_.moduleName());
   loadShader();
   setScene(scene);
 }

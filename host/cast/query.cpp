@@ -108,7 +108,7 @@ struct QueryCaster::Impl {
     }
     if (program.hits) buffers[7] = filledBuffer(device, std::as_bytes(std::span(records.places)), storage);
     stats.shader_ms += making.ms();
-    stats.module = program.moduleName();
+    stats.modules = {program.moduleName()};
     stats.planName = planName(choice.plan);
     stats.leftOut = leftOutLines(program, w, {});
     stats.deviceBytes = device.peakBytes();

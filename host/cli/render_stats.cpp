@@ -53,13 +53,19 @@ void printLines(const char* title, const std::vector<std::string>& lines) {
   for (const std::string& line : lines) std::fprintf(stderr, "  %s\n", line.c_str());
 }
 
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
 }  // namespace
 
 void printTable(const RenderStats& s) {
   std::fprintf(stderr, "%-24s %s\n", "scene", s.scene.c_str());
   std::fprintf(stderr, "%-24s %s\n", "device", (s.deviceName + (s.driver.empty() ? "" : ", " + s.driver)).c_str());
   std::fprintf(stderr, "%-24s %dx%d\n", "pixels", s.width, s.height);
-  if (!s.cast.module.empty()) std::fprintf(stderr, "%-24s %s\n", "shader", s.cast.module.c_str());
+  if (!s.cast.modules.empty()) std::fprintf(stderr, "%-24s %s\n", "shader", joined(s.cast.modules).c_str());
   for (const auto& [name, ms] : phases(s)) std::fprintf(stderr, "%-24s %14.3f\n", name, ms);
   for (const auto& [name, count] : counts(s))
     std::fprintf(stderr, "%-24s %14llu\n", name, static_cast<unsigned long long>(count));
@@ -75,7 +81,7 @@ void printJson(const RenderStats& s) {
   json["driver"] = s.driver;
   json["width"] = s.width;
   json["height"] = s.height;
-  json["module"] = s.cast.module;
+  json["module"] = joined(s.cast.modules);
   json["frames"] = s.frames;
   if (s.frames_ms > 0) json["frames_per_second"] = std::round(s.frames * 1e7 / s.frames_ms) / 1e4;
   json["plan_name"] = s.cast.planName;

@@ -58,8 +58,9 @@ std::vector<Module> modulesOf(const Shader& shader, CastStats& stats) {
       });
   const ImageCaster caster(*device, scene, job, shader.casting.cast);
   stats = caster.stats();
+  auto search = stats.modules.begin();
   for (Module& module : modules)
-    if (module.name.empty()) module.name = stats.module;  // the search
+    if (module.name.empty()) module.name = *search++;  // one a pass
   return modules;
 }
 

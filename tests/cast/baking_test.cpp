@@ -58,9 +58,15 @@ TEST_P(BakingTest, BenchmarksAreBakedFromTheStart) {
   job.width = 64, job.height = 48;
   job.channels.rgb8 = true;
   ImageCaster caster(device(), scene, job, {.method = GetParam()});
+  const bool turns = GetParam() != Method::naive;
   EXPECT_FALSE(isBaked(caster.stats()));
+  EXPECT_EQ(caster.stats().modules.at(0).ends_with("_turn1"), turns);
+  const std::size_t bytes = caster.stats().specialisedSpirvBytes;
   EXPECT_GT(caster.dispatchOnly(), 0);
   EXPECT_TRUE(isBaked(caster.stats()));
+  EXPECT_EQ(caster.stats().modules.size(), 1u);  // what is used now, and no more
+  EXPECT_TRUE(caster.stats().modules[0].ends_with("_perspective")) << caster.stats().modules[0];
+  EXPECT_LT(caster.stats().specialisedSpirvBytes, 2 * bytes);
 }
 
 }  // namespace

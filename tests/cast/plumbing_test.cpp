@@ -171,8 +171,8 @@ TEST_P(Plumbing, StorageBuffersAreAsUniformOnes) {
     CastStats statsA, statsB;
     const Band x = renderWhole(device(), a, jobOf(a, channels), {.method = GetParam()}, &statsA);
     const Band y = renderWhole(device(), b, jobOf(b, channels), {.method = GetParam(), .plan = Plan::storage}, &statsB);
-    EXPECT_EQ(statsA.module.find("storage"), std::string::npos) << statsA.module;
-    EXPECT_NE(statsB.module.find("storage"), std::string::npos) << statsB.module;
+    EXPECT_EQ(statsA.modules.at(0).find("storage"), std::string::npos) << statsA.modules[0];
+    EXPECT_NE(statsB.modules.at(0).find("storage"), std::string::npos) << statsB.modules[0];
     int changed = 0;  // an environment or orthographic camera may see the others
     for (std::size_t i = 0; i < x.solid.size(); ++i) {
       if (y.solid[i] >= static_cast<int>(few.world.solids.size())) {
