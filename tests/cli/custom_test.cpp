@@ -110,8 +110,8 @@ TEST_F(Custom, ShaderShowsWhatTheDriverGets) {
   EXPECT_NE(text.out.find("OpEntryPoint GLCompute"), std::string::npos);
   EXPECT_EQ(text.out.find("OpSpecConstant "), std::string::npos);
   const Result glsl = run({"shader", file, "--emit", "glsl", "--method", "fast"});
-  EXPECT_TRUE(
-      glsl.out.starts_with("// pixels_fast_perspective_turn1, from the specialised SPIR-V by spirv-cross\n#version 450"))
+  EXPECT_TRUE(glsl.out.starts_with(
+      "// pixels_fast_perspective_turn1, from the specialised SPIR-V by spirv-cross\n#version 450"))
       << glsl.out.substr(0, 100) << glsl.err;
   EXPECT_NE(glsl.out.find("void main()"), std::string::npos);
   // Baked: the ball's numbers are in the code.
