@@ -24,7 +24,7 @@ endif()
 # a value from one line to the next left out. No arithmetic is touched. (lavapipe makes a pipeline in half the time.)
 #
 # Where an invocation's rays take turns, also: loops over those of a turn, and all state in registers, as
-# host/gpu/unroll.cpp needs it.
+# host/gpu/unroll.cpp needs it. (--ccp calculates what has constants alone, rounding as the driver would.)
 set(passes "")
 if(DEFINES MATCHES "TURN=")
   set(passes --ssa-rewrite --loop-unroll --ccp --scalar-replacement=0 --ssa-rewrite --merge-blocks --redundancy-elimination

@@ -14,8 +14,8 @@
 //   CAMERA     0 perspective, 1 environment, 2 orthographic
 //   STORAGE    0 records in uniform buffers, 1 in storage buffers and searched in portions
 //   ADDRESS    1, with STORAGE 0: records and view by their addresses (records.glsl)
-//   TURN       1 or 4, with STORAGE 0: so many rays of an invocation at a time, the others in a loop. Less code, so that the
-//              pipeline is made sooner (1) or runs slower (4) than with all at once
+//   TURN       1 or 4, with ADDRESS 1: so many rays of an invocation at a time, the others in a loop. Less code than all at
+//              once, which the driver compiles sooner and which runs slower, 1 more so than 4
 //   HITS       1: also normals, local coordinates and hit points
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -182,7 +182,7 @@ void search(uint column, uint row, uint pixel, out Result result[AT_ONCE]) {
   if (KIND##_COUNT > 0u) {                                                    \
     uint at = FIRST_ROW(NUMBER, next);                                        \
     for (uint i = 0u; i < COUNT(NUMBER, KIND); ++i) {                         \
-      UNROLL for (uint k = 0u; k < AT_ONCE; ++k) TEST(kind, at);                 \
+      UNROLL for (uint k = 0u; k < AT_ONCE; ++k) TEST(kind, at);              \
       at += ROWS(EYE_ROWS, WORLD_ROWS);                                       \
     }                                                                         \
     next = at;                                                                \

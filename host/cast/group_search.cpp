@@ -120,8 +120,8 @@ void GroupSearch::makePipeline(const Records& search, const Records& world, std:
   constants_ = std::move(constants);
   if (bakeAtOnce_) return bake();
   loadModule();
-  usePipeline(program_.address && program_.turn == 0 ? gpu::baked(spirv_, {})
-                                                     : spirv_);  // baked: with its loops unrolled
+  const bool marked = program_.address && program_.turn == 0;  // its loops for unrolling, by the driver
+  usePipeline(marked ? gpu::baked(spirv_, {}) : spirv_);
 }
 
 void GroupSearch::loadModule() {

@@ -43,8 +43,8 @@ struct ParsedModule {
 using Known = std::unordered_map<std::uint32_t, std::uint32_t>;
 
 /// Loops that count from one known number to another, with all their state in phis (as spirv-opt leaves it): written out
-/// round by round, and integers that are known then turned to constants. Loops marked DontUnroll, of more than `mostRounds`,
-/// or with anything in them that is not known here, stay.
-void unrollLoops(ParsedModule& module, Known& known, std::uint32_t mostRounds = 256);
+/// round by round, and integers that are known then turned to constants. Loops marked DontUnroll, of more than 256 rounds, or
+/// with anything in them that is not known there, stay.
+void unrollLoops(ParsedModule& module, Known& known);
 
 }  // namespace solidcast::gpu

@@ -54,7 +54,7 @@ struct Includes {
 CompiledModule compileText(const SourceText& source, const Defines& defines, const Includes& includes);
 
 /// The module as the driver gets it (Device::makePipeline() calls this): constants set and folded, dead branches,
-/// functions and buffers gone. Takes well under a millisecond.
+/// functions and buffers gone, loops of known length written out where that can be (parsed_module.h). Takes about a millisecond.
 std::vector<std::uint32_t> specialised(std::span<const std::uint32_t> spirv,
                                        const std::vector<std::pair<std::uint32_t, std::uint32_t>>& constants);
 

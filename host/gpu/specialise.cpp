@@ -3,7 +3,7 @@
 //
 // Drivers fold specialisation constants too, but only after they have translated and inlined everything: on lavapipe a
 // pipeline for the course's scene takes 2 to 3 times as long from the whole module. SPIRV-Tools' optimizer does the same
-// and much more, in over 100 ms; this does it in well under one. It knows what glslang emits for this project's shaders:
+// and much more, in over 100 ms; this takes one. It knows what glslang emits for this project's shaders:
 // 32-bit constants, structured selections, no switch on a specialisation constant. What it does not know it leaves alone.
 #define SPV_ENABLE_UTILITY_CODE  // which instructions have results
 #include <glslang/SPIRV/spirv.hpp>

@@ -37,6 +37,7 @@ class Names {
   std::vector<std::uint32_t> of_, renamed_;  // 0: as it is
 };
 constexpr std::size_t mostInstructions = 1 << 16;  // of a loop written out
+constexpr std::uint32_t mostRounds = 256;
 
 std::uint32_t resultOf(const Instruction& in) {
   bool result = false, type = false;
@@ -107,8 +108,7 @@ void eachOperand(Instruction& in, F f) {
 
 class Unroller {
  public:
-  Unroller(ParsedModule& module, Known& known, std::uint32_t mostRounds)
-      : module_(module), known_(known), mostRounds_(mostRounds) {
+  Unroller(ParsedModule& module, Known& known) : module_(module), known_(known) {
     for (std::size_t i = 0; i < module.globals.size(); ++i) {
       const Instruction& in = module.globals[i];
       if (in.op == spv::OpDecorate) decorations_[in.at(1)].push_back(in), lastDecoration_ = i;
@@ -159,8 +159,8 @@ class Unroller {
     for (const Block& block : function.blocks) byLabel[block.label] = &block;
     std::size_t instructions = n;
     std::uint32_t back = 0;  // the block that goes back to the header
-    std::size_t continuing =
-        0;  // ways to the continue block: out of a selection it would be none once the loop is gone
+    // Ways to the continue block. A second one, out of a selection, would lead nowhere once the loop is gone.
+    std::size_t continuing = 0;
     for (std::vector<std::uint32_t> open = {loop.inside}; !open.empty();) {
       const std::uint32_t label = open.back();
       open.pop_back();
@@ -214,7 +214,7 @@ class Unroller {
     // The order of signed numbers is that of unsigned ones with the highest bit turned over.
     const std::uint32_t sign = condition->op == spv::OpSLessThan ? 1u << 31 : 0;
     for (std::uint32_t i = *from; (i ^ sign) < (*end ^ sign); i += *by)
-      if (++rounds > mostRounds_) return {};
+      if (++rounds > mostRounds) return {};
     return rounds;
   }
 
@@ -326,7 +326,6 @@ class Unroller {
 
   ParsedModule& module_;
   Known& known_;
-  std::uint32_t mostRounds_;
   std::unordered_map<std::uint32_t, std::vector<Instruction>> decorations_;
   Names names_[2];
   std::unordered_set<std::uint32_t> integers_;  // types, of 32 bits
@@ -337,8 +336,6 @@ class Unroller {
 
 }  // namespace
 
-void unrollLoops(ParsedModule& module, Known& known, std::uint32_t mostRounds) {
-  Unroller(module, known, mostRounds).run();
-}
+void unrollLoops(ParsedModule& module, Known& known) { Unroller(module, known).run(); }
 
 }  // namespace solidcast::gpu

@@ -110,5 +110,26 @@ TEST_F(AtASphere, WhatNoEditCanMendEndsItAtOnce) {
   expectError(run({"watch", scene, "-o", folder / "none/x.png"}), 5, {"none/x.png"}, false);
 }
 
+TEST(HttpModule, IsLoadedForAPageAlone) {
+  Call asked;
+  asked.arguments = {"--version"};
+  asked.environment = {"LD_TRACE_LOADED_OBJECTS=1"};  // the dynamic linker tells what it would load
+  const std::string loaded = run(asked).out;
+  EXPECT_NE(loaded.find("libstdc++"), std::string::npos) << loaded;
+  EXPECT_EQ(loaded.find("httplib"), std::string::npos) << loaded;
+  EXPECT_EQ(loaded.find("libssl"), std::string::npos) << loaded;
+}
+
+TEST(HttpModule, ThatCannotBeLoadedIsAnError) {
+  const Folder folder;
+  writeFile(folder / "ball.json", smallScene());
+  writeFile(folder / "solidcast_http.so", "no library");
+  Call call;
+  call.arguments = {"watch", folder / "ball.json", "--serve", "0"};
+  call.environment = {"LD_LIBRARY_PATH=" + folder.path()};
+  expectError(run(call), 2, {"--serve", "solidcast_http.so", "expected"}, false);
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"ball.json", "solidcast_http.so"}));
+}
+
 }  // namespace
 }  // namespace solidcast::watch_test
