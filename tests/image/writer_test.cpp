@@ -19,35 +19,11 @@ namespace {
 
 using namespace testing;
 
-const std::vector<std::uint8_t>& levels(const Image& image) { return std::get<0>(image.values); }
 const std::vector<float>& floats(const Image& image) { return std::get<1>(image.values); }
 
 void expectSameBits(const std::vector<float>& a, const std::vector<float>& b) {
   ASSERT_EQ(a.size(), b.size());
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0);
-}
-
-TEST(Png, RoundTripsManySizes) {
-  const Folder folder;
-  for (const auto& [width, height] :
-       std::vector<std::pair<int, int>>{{1, 1}, {3, 2}, {640, 480}, {1, 5000}, {90000, 7}}) {
-    const Band band = randomBand(width, height);
-    writeWhole(folder / "a.png", band);
-    const Image image = readImage(folder / "a.png");
-    EXPECT_EQ(image.width, width);
-    EXPECT_EQ(image.height, height);
-    EXPECT_EQ(image.channels, 3);
-    EXPECT_EQ(levels(image), band.rgb8);
-  }
-}
-
-TEST(Png, NoiseRoundTripsThoughItGrows) {
-  const Folder folder;
-  std::mt19937 random(3);
-  Band band = randomBand(700, 700);
-  for (std::uint8_t& byte : band.rgb8) byte = static_cast<std::uint8_t>(random());
-  writeWhole(folder / "a.PNG", band);
-  EXPECT_EQ(levels(readImage(folder / "a.PNG")), band.rgb8);
 }
 
 TEST(Pfm, KeepsEveryBitOfEveryKind) {
