@@ -179,21 +179,30 @@ class Specialiser {
     if (function.blocks.empty()) return;
     std::unordered_map<std::uint32_t, const Block*> byLabel;
     for (const Block& block : function.blocks) byLabel[block.label] = &block;
-    std::unordered_set<std::uint32_t> kept;
+    std::unordered_set<std::uint32_t> reached;
     std::vector<std::uint32_t> open = {function.blocks[0].label};
     while (!open.empty()) {
       std::uint32_t label = open.back();
       open.pop_back();
-      if (!kept.insert(label).second) continue;
-      const Block& block = *byLabel.at(label);
-      for (std::uint32_t next : successors(block)) open.push_back(next);
-      if (block.code.size() < 2) continue;  // a header's merge and continue blocks are named, so they must stay
-      const Instruction& merge = block.code[block.code.size() - 2];
-      if (merge.op == spv::OpSelectionMerge || merge.op == spv::OpLoopMerge) open.push_back(merge.at(1));
-      if (merge.op == spv::OpLoopMerge) open.push_back(merge.at(2));
+      if (!reached.insert(label).second) continue;
+      for (std::uint32_t next : successors(*byLabel.at(label))) open.push_back(next);
     }
-    std::erase_if(function.blocks, [&](const Block& block) { return !kept.contains(block.label); });
-    // Parents that are gone, or that no longer lead here, leave the phis.
+    // A header's merge and continue blocks are named, so they must stay; nothing of them if they are not reached.
+    std::unordered_map<std::uint32_t, Instruction> named;
+    for (std::uint32_t label : reached) {
+      const Block& block = *byLabel.at(label);
+      if (block.code.size() < 2) continue;
+      const Instruction& merge = block.code[block.code.size() - 2];
+      if (merge.op != spv::OpSelectionMerge && merge.op != spv::OpLoopMerge) continue;
+      if (!reached.contains(merge.at(1))) named.try_emplace(merge.at(1), make(spv::OpUnreachable, {}));
+      if (merge.op == spv::OpLoopMerge && !reached.contains(merge.at(2)))
+        named.insert_or_assign(merge.at(2), make(spv::OpBranch, {label}));  // even if a selection merges there
+    }
+    std::erase_if(function.blocks, [&](Block& block) {
+      if (auto end = named.find(block.label); end != named.end()) block.code = {end->second};
+      return !reached.contains(block.label) && !named.contains(block.label);
+    });
+    // Parents that are gone, or that no longer lead here, leave the phis. Of one that is only named, no value matters.
     std::unordered_map<std::uint32_t, std::unordered_set<std::uint32_t>> parents;
     for (const Block& block : function.blocks)
       for (std::uint32_t next : successors(block)) parents[next].insert(block.label);
@@ -202,7 +211,11 @@ class Specialiser {
         if (in.op != spv::OpPhi) continue;
         std::vector<std::uint32_t> operands = {in.at(1), in.at(2)};
         for (std::size_t k = 3; k + 1 < in.words.size(); k += 2)
-          if (parents[block.label].contains(in.at(k + 1))) operands.insert(operands.end(), {in.at(k), in.at(k + 1)});
+          if (const std::uint32_t parent = in.at(k + 1);
+              parents[block.label].contains(parent) && !named.contains(parent))
+            operands.insert(operands.end(), {in.at(k), parent});
+        for (std::uint32_t parent : parents[block.label])
+          if (named.contains(parent)) operands.insert(operands.end(), {in.at(2), parent});
         in = make(spv::OpPhi, operands);
       }
   }

@@ -45,6 +45,12 @@ const Case cases[] = {
     {"ThatBreaks", "for (uint i = 0u; i < COUNT; ++i) { sum += i; if (sum > x) break; }", 1},
     {"ThatContinues",
      "for (uint i = 0u; i < COUNT; ++i) { if ((x & 1u) == 1u) { last += i; continue; } sum = sum * 3u + i; }", 1},
+    {"ThatBreaksAtOnce",
+     "for (uint i = 0u; i < x; ++i) { last += i; if (COUNT != 9u) break; sum = sum * 3u + i; last = sum; }", 1},
+    {"ThatBreaksBeforeALongStep",
+     "for (uint i = 0u; i < x; i += (sum > 9u ? 1u + last % 3u : last % 2u + 1u)) { last += i; if (COUNT != 9u) break;"
+     " sum += last; if (sum > 99u) { last ^= 1u; } }",
+     1},
     {"OfUnknownLength", "for (uint i = 0u; i < x; ++i) sum = sum * 3u + i;", 1},
     {"MarkedSo", "[[dont_unroll]] for (uint i = 0u; i < COUNT; ++i) sum = sum * 3u + i;", 1},
     {"Signed", "for (int i = -1; i < 2; ++i) sum = sum * 3u + uint(i) * COUNT;", 0},
