@@ -50,14 +50,11 @@ struct Vec3 {
 };
 using V3 = Vec3<f128>;
 
+// The first argument decides the type: with an int literal there the second would be cut to one.
 template <class T>
-T smaller(T a, std::type_identity_t<T> b) {
-  return a < b ? a : b;
-}
+requires(!std::is_integral_v<T>) T smaller(T a, std::type_identity_t<T> b) { return a < b ? a : b; }
 template <class T>
-T larger(T a, std::type_identity_t<T> b) {
-  return a > b ? a : b;
-}
+requires(!std::is_integral_v<T>) T larger(T a, std::type_identity_t<T> b) { return a > b ? a : b; }
 
 /// The power of two nearest below |x| (1 for 0).
 inline f128 powerOfTwo(f128 x) {

@@ -31,7 +31,7 @@ bool shade(const Scene& scene, bool twoSided, const oracle::Ray128& ray, const o
   cosine = twoSided ? fabsq(cosine) : larger(cosine, 0);
   f128 colour[3] = {cosine, cosine, cosine};
   if (const auto* dist = std::get_if<RayCastingDistIntegrator>(&scene.integrator)) {
-    const f128 part = smaller(1, larger(0, (truth.t - dist->nearDist) / (f128(dist->farDist) - dist->nearDist)));
+    const f128 part = std::clamp<f128>((truth.t - dist->nearDist) / (f128(dist->farDist) - dist->nearDist), 0, 1);
     for (std::size_t c = 0; c < 3; ++c)
       colour[c] *= dist->nearColor[c] + part * (f128(dist->farColor[c]) - dist->nearColor[c]);
   } else if (!std::holds_alternative<RayCastingIntegrator>(scene.integrator)) {
@@ -39,7 +39,7 @@ bool shade(const Scene& scene, bool twoSided, const oracle::Ray128& ray, const o
   }
   for (std::size_t c = 0; c < 3; ++c) {
     verdict.radiance[c] = static_cast<double>(colour[c]);
-    verdict.levels[c] = static_cast<int>(255 * smaller(1, larger(0, colour[c])));
+    verdict.levels[c] = static_cast<int>(255 * std::clamp<f128>(colour[c], 0, 1));
   }
   return true;
 }

@@ -70,6 +70,29 @@ TEST_F(Explain, EveryCameraAndMethodOnEveryKind) {
   for (const int seen : kinds) EXPECT_GT(seen, 0);
 }
 
+// The truth's colours come from t and normal in binary128 by code of their own.
+TEST_F(Explain, TruthHasTheExactColours) {
+  Scene scene = loaded("a_solids.json");
+  scene.width = 48, scene.height = 36;
+  const std::variant<RayCastingIntegrator, RayCastingDistIntegrator> integrators[] = {
+      RayCastingIntegrator{}, RayCastingDistIntegrator{{1, 0.2, 0}, 4, {0, 1, 0.4}, 12}};
+  for (const auto& integrator : integrators) {
+    std::visit([&](const auto& one) { scene.integrator = one; }, integrator);
+    int coloured = 0;
+    for (int x = 1; x < scene.width; x += 6)
+      for (int y = 1; y < scene.height; y += 6) {
+        const RenderJob job{scene.width, scene.height, {}, 1, false, {}};
+        const Explanation e = explainPixel(device(), scene, job, {}, reference::Precision::f64, x, y);
+        for (std::size_t c = 0; c < 3; ++c) {
+          EXPECT_NEAR(e.truth.radiance[c], e.gpu.radiance[c], 4e-6) << x << "," << y;
+          EXPECT_NEAR(e.truth.levels[c], e.gpu.levels[c], 1) << x << "," << y;
+          coloured += e.truth.levels[c] > 0 && e.truth.levels[c] < 255;
+        }
+      }
+    EXPECT_GT(coloured, 40);
+  }
+}
+
 TEST_F(Explain, BundledScenes) {
   std::array<int, kindCount> kinds{};
   for (const std::string& name : bundledScenes()) {
