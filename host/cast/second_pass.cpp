@@ -25,6 +25,19 @@ Cut cutOf(ShapeRef shape, const RayQ& ray) {
 SecondPass::SecondPass(const World& world, const Index* index) : world_(world), index_(index) {}
 SecondPass::~SecondPass() = default;
 
+const Cut* SecondPass::note(const RayQ& ray, std::uint32_t solid, std::vector<Candidate>& all) const {
+  const ShapeRef shape = world_.solids.shape(solid);
+  // Copies of a solid tie everywhere; a pile of them is not to be cut one by one.
+  if (!all.empty() && world_.solids.shape(all.back().solid).copy() == shape.copy()) {
+    all.back().solid = std::min(all.back().solid, solid);
+    return nullptr;
+  }
+  const Cut c = cutOf(shape, ray);
+  if (!c.hit) return nullptr;
+  all.push_back({solid, c});
+  return &all.back().cut;
+}
+
 std::vector<SecondPass::Candidate> SecondPass::candidates(const RayQ& ray, f128 limit) const {
   const f128 perT = length(ray.direction);
   double o[3], d[3], nearest = static_cast<double>(limit * perT);
@@ -35,10 +48,7 @@ std::vector<SecondPass::Candidate> SecondPass::candidates(const RayQ& ray, f128 
   std::vector<Candidate> all;
   const IndexWalk walk(o, d);
   const auto consider = [&](std::uint32_t solid) {
-    const Cut c = cutOf(world_.solids.shape(solid), ray);
-    if (!c.hit) return;
-    all.push_back({solid, c});
-    nearest = std::min(nearest, static_cast<double>(c.t * perT));
+    if (const Cut* c = note(ray, solid, all)) nearest = std::min(nearest, static_cast<double>(c->t * perT));
   };
   if (index_ == nullptr && cast_++ < fewCasts) {
     for (std::uint32_t solid = 0; solid < world_.solids.size(); ++solid) {
@@ -59,8 +69,7 @@ ExactHit SecondPass::cast(const RayQ& ray, std::optional<f128> tMax) const {
 
 ExactHit SecondPass::castAmong(const RayQ& ray, std::span<const std::uint32_t> solids) const {
   std::vector<Candidate> all;
-  for (const std::uint32_t solid : solids)
-    if (const Cut c = cutOf(world_.solids.shape(solid), ray); c.hit) all.push_back({solid, c});
+  for (const std::uint32_t solid : solids) note(ray, solid, all);
   return nearest(ray, all, std::nullopt);
 }
 

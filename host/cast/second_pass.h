@@ -50,6 +50,8 @@ class SecondPass {
   };
   /// Every solid that the ray hits within `limit` (in its own lengths) and that may be nearest, by index.
   std::vector<Candidate> candidates(const RayQ& ray, f128 limit) const;
+  /// The solid's cut at the end of `all`, if there is one that an earlier solid does not have too.
+  const Cut* note(const RayQ& ray, std::uint32_t solid, std::vector<Candidate>& all) const;
   ExactHit nearest(const RayQ& ray, std::span<const Candidate> candidates, std::optional<f128> tMax) const;
 
   const World& world_;

@@ -1,7 +1,9 @@
 // The guarantee's fallback is seen to run: worlds that force doubt, and the answers after it.
 #include "host/cast/second_pass.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "host/cast/pixel_candidates.h"
 #include "host/scene/random.h"
@@ -72,6 +74,26 @@ TEST_F(OnDevice, CoincidentSolidsOverflowTheListOfDoubts) {
 }
 
 // Radiance of doubtful pixels comes from the host: it must be what the shader says beside it.
+// Copies of a solid tie wherever it is hit: the first of them counts, in whatever order the index comes to them.
+TEST(SecondPass, OfCopiesTheFirstCounts) {
+  std::vector<Shape> shapes;
+  for (int i = 0; i < 900; ++i) {
+    if (i % 3 == 0) shapes.push_back(Sphere{{0, 0, 0}, 1});
+    if (i % 3 == 1) shapes.push_back(Sphere{{0, 0, 0}, 1.5});
+    if (i % 3 == 2) shapes.push_back(Sphere{{0.1 * i, 7, 0}, 1});
+  }
+  std::reverse(shapes.begin(), shapes.end());  // the large ones begin at 1, the small ones at 2
+  const World world = worldOf(shapes);
+  const SecondPass second(world);
+  std::vector<std::uint32_t> all(shapes.size());
+  std::iota(all.begin(), all.end(), 0);
+  for (int i = 0; i < 40; ++i) {  // the index is built after a few
+    const RayQ ray{V3{0.01 * i, 0, 9}, V3{0, 0, -1}, i % 2 == 0};
+    EXPECT_EQ(second.cast(ray).index, 1) << i;
+    EXPECT_EQ(second.castAmong(ray, all).index, 1) << i;
+  }
+}
+
 TEST_F(OnDevice, TheHostShadesAsTheShaderDoes) {
   const Shape floor = Quad{{-4, -1, 4}, {8, 0, 0}, {0, 0.5, -9}};
   const Shape ball = Sphere{{0.3, 0.2, 0}, 1};
