@@ -198,10 +198,10 @@ class Specialiser {
       if (merge.op == spv::OpLoopMerge && !reached.contains(merge.at(2)))
         named.insert_or_assign(merge.at(2), make(spv::OpBranch, {label}));  // even if a selection merges there
     }
-    std::erase_if(function.blocks, [&](Block& block) {
+    std::erase_if(function.blocks,
+                  [&](const Block& block) { return !reached.contains(block.label) && !named.contains(block.label); });
+    for (Block& block : function.blocks)
       if (auto end = named.find(block.label); end != named.end()) block.code = {end->second};
-      return !reached.contains(block.label) && !named.contains(block.label);
-    });
     // Parents that are gone, or that no longer lead here, leave the phis. Of one that is only named, no value matters.
     std::unordered_map<std::uint32_t, std::unordered_set<std::uint32_t>> parents;
     for (const Block& block : function.blocks)
